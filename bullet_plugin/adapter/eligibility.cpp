@@ -62,7 +62,7 @@ const char* reasonForStock(const PluginState& state, const btSoftBody& cloth, co
 const char* reasonForBulletsLinks(const PluginState& state, const btSoftBody& body)
 {
     if (!state.ready()) return "Drape could not start; see Plugin::error()";
-    if (state.settings().m_solver != Solver::Drape) return "Settings::m_solver leaves links to Bullet";
+    if (state.settings().m_solver == Solver::Bullet) return "Settings::m_solver leaves links to Bullet";
     if (!state.steps(body)) return "the world's soft body solver is not a drape::SoftBodySolver of this plugin";
     return SubstepBody::reasonForBullet(body);
 }

@@ -93,9 +93,11 @@ void RigidBodies::addRows(const btSoftBody& body, const SolverNodes& nodes, Rigi
         row.m_normal = vec3Of(contact.m_cti.m_normal);
         row.m_arm = vec3Of(contact.m_c1);
         const btVector3 start = vectorOf(nodes.start(row.m_node));
-        row.m_gap = float(contact.m_cti.m_normal.dot(start) + contact.m_cti.m_offset) +
-                    dt * vec3Dot(row.m_normal, velocityAt(m_bodies[row.m_body], row.m_arm));
-        row.m_recover = row.m_gap < 0 ? targetGap(row.m_gap, float(contact.m_c4), margin) - row.m_gap : 0.0f;
+        const float advance = dt * vec3Dot(row.m_normal, velocityAt(m_bodies[row.m_body], row.m_arm));
+        row.m_gap = float(contact.m_cti.m_normal.dot(start) + contact.m_cti.m_offset) + advance;
+        // Bullet's contacts act on approaching nodes alone. Beside edges of a mesh their normals may lead inwards.
+        const bool leaves = vec3Dot(row.m_normal, nodes.way(row.m_node)) > advance;
+        row.m_recover = row.m_gap < 0 && !leaves ? targetGap(row.m_gap, float(contact.m_c4), margin) - row.m_gap : 0.0f;
         row.m_friction = float(body.m_cfg.kDF * object.getFriction());
         rows.add(row);
     }

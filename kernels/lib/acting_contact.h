@@ -8,11 +8,15 @@
 
 DRAPE_NAMESPACE_BEGIN
 
-// Share of a movable node's inverse mass that is added to a contact's mobility where the rest of its point is fixed;
+// Share of the greatest inverse mass that is added to a contact's mobility where the rest of its point is fixed;
 // proportionally less where less of it is fixed. It keeps a node with little weight in the point from being thrown
 // far. The node moves at most 2.8 times the violation in a sweep, at a weight of a fifth, and less the smaller its
 // weight.
 #define DRAPE_HELD_SOFTNESS 0.04f
+
+// Nodes count as partly fixed if their inverse mass is less than this share of the greatest one of the contact, the
+// more the less it is. Heavier nodes hardly move, so light ones would be thrown beside them as beside fixed nodes.
+#define DRAPE_HEAVY_SHARE 0.1f
 
 // Minimum share of the thickness that a step recovers of an initial depth. Only positions recover; no speed remains.
 // A tenth quickly corrects cloth that came a little too near while it moved along a curved obstacle.
@@ -52,8 +56,7 @@ typedef struct ContactGaps
 // starts inside is therefore not thrown out.
 DRAPE_FUNCTION float targetGap(float startGap, float hardness, float thickness)
 {
-    const float recovered =
-        drapeMax(startGap + DRAPE_RECOVERED_SHARE * thickness, startGap * (1.0f - hardness));
+    const float recovered = drapeMax(startGap + DRAPE_RECOVERED_SHARE * thickness, startGap * (1.0f - hardness));
     return drapeMin(0.0f, recovered);
 }
 
@@ -81,11 +84,22 @@ DRAPE_FUNCTION ContactGaps contactGaps(const FeatureNodes* nodes, const ContactP
     return gaps;
 }
 
+// Returns the share of a weighted point that belongs to fixed nodes, or to nodes that are much heavier than the
+// lightest one. most: greatest inverse mass of the nodes, 1/kg.
+DRAPE_FUNCTION float heldShare(const FeatureNodes* nodes, const float* weights, float most)
+{
+    const float light = DRAPE_HEAVY_SHARE * most;
+    float held = 0.0f;
+    for (DRAPE_UINT k = 0; k < nodes->m_count; ++k)
+        if (nodes->m_inverseMasses[k] < light) held += weights[k] * (1.0f - nodes->m_inverseMasses[k] / light);
+    return held;
+}
+
 // Gives the row another plane.
 DRAPE_FUNCTION void setPlane(ActingContact* contact, const FeatureNodes* nodes, const ContactPlane* plane)
 {
     ContactRow* row = &contact->m_row;
-    float mobility = 0.0f, held = 0.0f, most = 0.0f;
+    float mobility = 0.0f, most = 0.0f;
     for (DRAPE_UINT k = 0; k < nodes->m_count; ++k)
     {
         const float inverseMass = nodes->m_inverseMasses[k], weight = plane->m_weights[k];
@@ -93,8 +107,8 @@ DRAPE_FUNCTION void setPlane(ActingContact* contact, const FeatureNodes* nodes, 
         row->m_shares[k] = weight * inverseMass;
         mobility += weight * weight * inverseMass;
         most = drapeMax(most, inverseMass);
-        if (!(inverseMass > 0.0f)) held += weight;
     }
+    const float held = heldShare(nodes, plane->m_weights, most);
     const float softened = mobility + DRAPE_HELD_SOFTNESS * held * most;
     row->m_inverseMobility = mobility > 0.0f ? 1.0f / softened : 0.0f;
     row->m_mended = held > 0.0f ? mobility * row->m_inverseMobility : 1.0f;
@@ -143,8 +157,8 @@ DRAPE_FUNCTION ActingContact actingContact(const FeatureNodes* nodes, const Cont
 // standing at the step's end: the nodes move along with the rest of its motion. displacements: m, of the nodes. passed:
 // the share of the step that has passed. found: the plane as it was found. Returns whether the plane changed; it is
 // written to *plane then.
-DRAPE_FUNCTION int renewPlane(ActingContact* contact, const FeatureNodes* nodes, const Vec3* displacements, float passed,
-                              const ContactPlane* found, ContactPlane* plane)
+DRAPE_FUNCTION int renewPlane(ActingContact* contact, const FeatureNodes* nodes, const Vec3* displacements,
+                              float passed, const ContactPlane* found, ContactPlane* plane)
 {
     Vec3 places[3];
     for (DRAPE_UINT k = 0; k < 3; ++k)

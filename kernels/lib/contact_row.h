@@ -9,6 +9,15 @@
 
 DRAPE_NAMESPACE_BEGIN
 
+// Contacts in turns with links: the share of a violation that a projection corrects, and the minimum number of sweeps
+// over the acting contacts of a group after each sweep over all its contacts. Contacts then share a load however they
+// are ordered (docs/design_notes/contact_sweeps.md, "Shared loads").
+#define DRAPE_TURN_RELAXATION 0.5f
+#define DRAPE_ACTING_SWEEPS 3
+
+// Minimum number of such sweeps, times the substeps of a step. Links pull farther in a longer substep.
+#define DRAPE_ACTING_IN_STEP 12
+
 // Returns the displacement of the row's point of the cloth, m.
 DRAPE_FUNCTION Vec3 rowDisplacement(const ContactRow* row, const DRAPE_NODE_SPACE SolverNode* nodes)
 {
@@ -24,18 +33,19 @@ DRAPE_FUNCTION float rowViolation(const ContactRow* row, const DRAPE_NODE_SPACE 
     return row->m_level - (1.0f - passed) * row->m_advance - vec3Dot(row->m_normal, rowDisplacement(row, nodes));
 }
 
-// Computes the push that makes the row hold, or takes back an earlier push that is not needed any more. Friction removes
-// the point's motion since the step's start along the surface, relative to the obstacle, up to Coulomb's bound. way: m,
-// of the row's point. Returns whether there is anything to do; `worst` grows to the violation that a push can correct.
-// shift: kg m; a node moves by its share of it. A row with NaN does nothing.
-DRAPE_FUNCTION int pushRow(ContactRow* row, Vec3 way, float passed, float* worst, Vec3* shift)
+// Computes the push that makes the row hold, or takes back an earlier push that is not needed any more. Friction
+// removes the point's motion since the step's start along the surface, relative to the obstacle, up to Coulomb's bound.
+// way: m, of the row's point. relaxation: share of the violation that is corrected. Returns whether there is anything
+// to do; `worst` grows to the violation that a push can correct. shift: kg m; a node moves by its share of it. A row
+// with NaN does nothing.
+DRAPE_FUNCTION int pushRow(ContactRow* row, Vec3 way, float passed, float relaxation, float* worst, Vec3* shift)
 {
     const Vec3 normal = row->m_normal;
     const float along = vec3Dot(normal, way);
     const float violation = row->m_level - (1.0f - passed) * row->m_advance - along;
     if (!(violation > 0.0f) && !(row->m_multiplier > 0.0f)) return 0;
     *worst = drapeMax(*worst, violation * row->m_mended);
-    const float pushed = drapeMax(0.0f, row->m_multiplier + violation * row->m_inverseMobility);
+    const float pushed = drapeMax(0.0f, row->m_multiplier + relaxation * violation * row->m_inverseMobility);
     const Vec3 slid = vec3Sub(vec3AddScaled(way, normal, -along), vec3Scale(row->m_carried, passed));
     Vec3 held = vec3AddScaled(row->m_held, slid, -row->m_inverseMobility);
     const float most = row->m_friction * pushed, wanted2 = vec3Dot(held, held);
@@ -47,10 +57,11 @@ DRAPE_FUNCTION int pushRow(ContactRow* row, Vec3 way, float passed, float* worst
 }
 
 // Pushes the row's nodes; see pushRow().
-DRAPE_FUNCTION int projectRow(ContactRow* row, DRAPE_NODE_SPACE SolverNode* nodes, float passed, float* worst)
+DRAPE_FUNCTION int projectRow(ContactRow* row, DRAPE_NODE_SPACE SolverNode* nodes, float passed, float relaxation,
+                              float* worst)
 {
     Vec3 shift;
-    if (!pushRow(row, rowDisplacement(row, nodes), passed, worst, &shift)) return 0;
+    if (!pushRow(row, rowDisplacement(row, nodes), passed, relaxation, worst, &shift)) return 0;
     for (DRAPE_UINT k = 0; k < row->m_count; ++k)
     {
         DRAPE_NODE_SPACE SolverNode* node = nodes + row->m_nodes[k];

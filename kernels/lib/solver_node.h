@@ -21,8 +21,8 @@ DRAPE_FUNCTION void nodeShift(DRAPE_NODE_SPACE SolverNode* node, DRAPE_GLOBAL No
 
 // Puts the node at its path's start, with the velocity that leads to the end under constant acceleration. perStep: 1/s,
 // the inverse of the step's time. share: s, of the acceleration in the mean velocity (Substeps::pathShare()).
-DRAPE_FUNCTION void nodeBegin(DRAPE_NODE_SPACE SolverNode* node, DRAPE_GLOBAL NodeState* state, Vec3 way, Vec3 acceleration,
-                              float perStep, float share)
+DRAPE_FUNCTION void nodeBegin(DRAPE_NODE_SPACE SolverNode* node, DRAPE_GLOBAL NodeState* state, Vec3 way,
+                              Vec3 acceleration, float perStep, float share)
 {
     node->m_displacement = vec3(0.0f, 0.0f, 0.0f);
     state->m_velocity = vec3AddScaled(vec3Scale(way, perStep), acceleration, -share);
@@ -46,7 +46,8 @@ DRAPE_FUNCTION void nodeEnd(const DRAPE_NODE_SPACE SolverNode* node, DRAPE_GLOBA
 }
 
 // Gives a shifted node the velocity of its displacement since nodeRemember(): perSecond times as much.
-DRAPE_FUNCTION void nodeAddShift(const DRAPE_NODE_SPACE SolverNode* node, DRAPE_GLOBAL NodeState* state, float perSecond)
+DRAPE_FUNCTION void nodeAddShift(const DRAPE_NODE_SPACE SolverNode* node, DRAPE_GLOBAL NodeState* state,
+                                 float perSecond)
 {
     if (!state->m_shifted) return;
     const Vec3 shift = vec3Sub(node->m_displacement, state->m_before);
@@ -56,8 +57,8 @@ DRAPE_FUNCTION void nodeAddShift(const DRAPE_NODE_SPACE SolverNode* node, DRAPE_
 // Bounds the velocity that the shift since nodeRemember() gives the node. The shift may stop the node's motion against
 // it. Beyond that it gives at most the velocity of the same shift in a whole step. perSecond: 1/s, the velocity per
 // metre of shift that is bounded. stepsPerSecond: 1/s.
-DRAPE_FUNCTION void nodeLimitShift(const DRAPE_NODE_SPACE SolverNode* node, DRAPE_GLOBAL NodeState* state, float perSecond,
-                                   float stepsPerSecond)
+DRAPE_FUNCTION void nodeLimitShift(const DRAPE_NODE_SPACE SolverNode* node, DRAPE_GLOBAL NodeState* state,
+                                   float perSecond, float stepsPerSecond)
 {
     if (!state->m_shifted) return;
     const Vec3 shift = vec3Sub(node->m_displacement, state->m_before);

@@ -33,35 +33,37 @@ typedef struct SolveRange
 typedef struct SolveCloth
 {
     SolveRange m_nodes;
-    SolveRange m_features;       // with contacts
+    SolveRange m_features;  // with contacts
     SolveRange m_links;
     SolveRange m_linkBatches;
-    SolveRange m_nodeBatches;    // contacts of nodes
-    SolveRange m_faceBatches;    // contacts of nodes and faces
-    SolveRange m_edgeBatches;    // contacts of edges
-    SolveRange m_regions;        // obstacles that limit the motion
-    DRAPE_UINT m_faceLists;      // position of the nodes' lists of faces, see SolveLayout
+    SolveRange m_nodeBatches;  // contacts of nodes
+    SolveRange m_faceBatches;  // contacts of nodes and faces
+    SolveRange m_edgeBatches;  // contacts of edges
+    SolveRange m_regions;      // obstacles that limit the motion
+    DRAPE_UINT m_faceLists;    // position of the nodes' lists of faces, see SolveLayout
     DRAPE_UINT m_substeps;
-    DRAPE_UINT m_linkSweeps;     // in each substep, each with a sweep over the contacts
-    DRAPE_UINT m_leastClosing;   // closing sweeps up to which the finer tolerance counts
+    DRAPE_UINT m_linkSweeps;    // in each substep, each with a sweep over the contacts
+    DRAPE_UINT m_leastClosing;  // closing sweeps up to which the finer tolerance counts
     DRAPE_UINT m_mostClosing;
-    DRAPE_UINT m_rests;          // whether all obstacles rest
-    float m_substepTime;         // s
-    float m_perStep;             // 1/s
-    float m_pathShare;           // s, see nodeBegin()
-    float m_perCorrection;       // 1/s
-    float m_kept;                // share of a velocity that damping leaves in a substep
-    float m_perShift;            // 1/s, velocity per metre of a closing shift
-    float m_perSecond;           // 1/s, steps per second
-    float m_hardness;            // see targetGap()
-    float m_mostThickness;       // m
-    float m_fineViolation;       // m, worst violation that may remain before m_leastClosing sweeps are done
-    float m_mostViolation;       // m, and after
-    float m_nearDistance;        // m, below which features may have passed each other
-    float m_margin;              // m, rounding margin of the levels
-    float m_retreat;             // m, bound on the displacement of a node by an obstacle's motion
-    float m_sure;                // m, see MotionLimit
-    float m_leastTolerance;      // m, see MotionLimit
+    DRAPE_UINT m_levels;        // of the cloth's groups
+    DRAPE_UINT m_actingSweeps;  // see ContactSweep::restart()
+    DRAPE_UINT m_rests;         // whether all obstacles rest
+    float m_substepTime;        // s
+    float m_perStep;            // 1/s
+    float m_pathShare;          // s, see nodeBegin()
+    float m_perCorrection;      // 1/s
+    float m_kept;               // share of a velocity that damping leaves in a substep
+    float m_perShift;           // 1/s, velocity per metre of a closing shift
+    float m_perSecond;          // 1/s, steps per second
+    float m_hardness;           // see targetGap()
+    float m_mostThickness;      // m
+    float m_fineViolation;      // m, worst violation that may remain before m_leastClosing sweeps are done
+    float m_mostViolation;      // m, and after
+    float m_nearDistance;       // m, below which features may have passed each other
+    float m_margin;             // m, rounding margin of the levels
+    float m_retreat;            // m, bound on the displacement of a node by an obstacle's motion
+    float m_sure;               // m, see MotionLimit
+    float m_leastTolerance;     // m, see MotionLimit
 } SolveCloth;
 
 // Links or features of one colour and level.
@@ -69,6 +71,7 @@ typedef struct SolveBatch
 {
     DRAPE_UINT m_first, m_last;
     DRAPE_UINT m_serial;  // they may share nodes: one after the other
+    DRAPE_UINT m_level;   // of their groups, from the leaves on
 } SolveBatch;
 
 typedef struct SolveLink
@@ -112,19 +115,19 @@ typedef struct SolveSpan
 typedef struct SolvePlane
 {
     Vec3 m_normal;
-    float m_level;          // m, with the margin for rounding
-    float m_weights[2];     // second and third node
-    DRAPE_UINT m_flags;     // DRAPE_PLANE_MADE …
-    DRAPE_UINT m_pushing;   // the stage in which the row pushed last
+    float m_level;         // m, with the margin for rounding
+    float m_weights[2];    // second and third node
+    DRAPE_UINT m_flags;    // DRAPE_PLANE_MADE …
+    DRAPE_UINT m_pushing;  // the stage in which the row pushed last
 } SolvePlane;
 
 // Working memory of a feature. Contacts beyond the list are not violated while no node is farther than the clearance
 // from its reference.
 typedef struct SolveFeatureState
 {
-    Vec3 m_references[3];     // m, displacements of the nodes when the contacts were listed
-    float m_clearance;        // m
-    DRAPE_UINT m_listCount;   // contacts in the list
+    Vec3 m_references[3];    // m, displacements of the nodes when the contacts were listed
+    float m_clearance;       // m
+    DRAPE_UINT m_listCount;  // contacts in the list
     DRAPE_UINT m_unused;
 } SolveFeatureState;
 
@@ -140,7 +143,7 @@ typedef struct SolveRegion
 // Working memory of the motion limit, by node.
 typedef struct SolveAllowance
 {
-    float m_start, m_end;     // m
+    float m_start, m_end;  // m
     DRAPE_UINT m_hasContact;
     DRAPE_UINT m_isNear;
 } SolveAllowance;

@@ -27,6 +27,7 @@ typedef struct Solve
     __global const int* m_faces;
     __global const Contact* m_contacts;
     __local SolverNode* m_nodes;
+    __local uint* m_pushingBatches;  // by contact batch, the stage in which one of its contacts pushed last
     __global NodeState* m_states;
     __global SolvePlane* m_planes;
     __global ActingContact* m_acting;
@@ -40,12 +41,17 @@ typedef struct Solve
 typedef struct Sweep
 {
     uint m_stage;
-    float m_passed;  // share of the step that has passed
-    float m_slack;   // m, bound on how far levels lie above those at the step's end
+    float m_passed;       // share of the step that has passed
+    float m_slack;        // m, bound on how far levels lie above those at the step's end
+    float m_relaxation;   // share of a violation that a projection corrects
+    uint m_actingSweeps;  // over the contacts of a level that act, after its edges
 } Sweep;
 
-// Least clearance of contacts that are not listed, as a share of the greatest thickness, and as a multiple of the nodes'
-// motion since contacts were listed before.
+// Batches whose pushes are recorded; those beyond count as pushing.
+#define DRAPE_RECORDED_BATCHES 256
+
+// Least clearance of contacts that are not listed, as a share of the greatest thickness, and as a multiple of the
+// nodes' motion since contacts were listed before.
 #define DRAPE_LISTED_SHARE 0.01f
 #define DRAPE_LISTED_MOTION 2.0f
 
@@ -335,7 +341,7 @@ static int projectContact(const Solve* solve, const SolveFeature* feature, const
         acting.m_row.m_held = vec3(0.0f, 0.0f, 0.0f);
     }
     Vec3 shift;
-    if (!pushRow(&acting.m_row, way, sweep->m_passed, worst, &shift)) return 0;
+    if (!pushRow(&acting.m_row, way, sweep->m_passed, sweep->m_relaxation, worst, &shift)) return 0;
     const Vec3 held = acting.m_row.m_held;
     ((__global float4*)(solve->m_acting + index))[2] = (float4)(held.x, held.y, held.z, acting.m_row.m_multiplier);
     solve->m_acting[index].m_pushed = 1;
@@ -358,8 +364,8 @@ static int projectContact(const Solve* solve, const SolveFeature* feature, const
 }
 
 // Lists the contacts of a feature that may act while its nodes move little.
-DRAPE_RARE_FUNCTION SolveFeatureState listContacts(const Solve* solve, const SolveFeature* feature, const Displacements* at,
-                                      const Sweep* sweep, const float moved)
+DRAPE_RARE_FUNCTION SolveFeatureState listContacts(const Solve* solve, const SolveFeature* feature,
+                                                   const Displacements* at, const Sweep* sweep, const float moved)
 {
     const float near =
         drapeMax(DRAPE_LISTED_SHARE * solve->m_cloth->m_mostThickness, DRAPE_LISTED_MOTION * moved) + sweep->m_slack;
@@ -407,15 +413,17 @@ static SolveFeatureState loadState(const Solve* solve, const uint index)
     return state;
 }
 
-// Visits the contacts of a feature in order: those that push and those that may be violated.
-static void visitFeature(const Solve* solve, const uint index, const Sweep* sweep, float* worst)
+// Visits the contacts of a feature in order: those that push and those that may be violated. Returns whether one
+// pushed.
+static int visitFeature(const Solve* solve, const uint index, const Sweep* sweep, float* worst)
 {
     const SolveFeature feature = loadFeature(solve, index);
     SolveFeatureState state = loadState(solve, index);
     Displacements at = displacementsOf(solve, &feature);
     float moved2;
     int old = isListOld(solve, &state, &at, sweep, &moved2);
-    if (state.m_listCount == 0 && !old) return;
+    if (state.m_listCount == 0 && !old) return 0;
+    int pushed = 0;
     uint done = feature.m_firstContact;  // contacts before it are
     for (uint i = 0; i < state.m_listCount || old;)
     {
@@ -432,33 +440,87 @@ static void visitFeature(const Solve* solve, const uint index, const Sweep* swee
         done = contact + 1;
         const SolvePlane plane = loadPlane(solve, contact);
         if (plane.m_pushing != sweep->m_stage && !(excessOf(&plane, &at) + sweep->m_slack > 0.0f)) continue;
-        if (projectContact(solve, &feature, contact, &plane, sweep, &at, worst))
-            old = isListOld(solve, &state, &at, sweep, &moved2);
+        if (!projectContact(solve, &feature, contact, &plane, sweep, &at, worst)) continue;
+        pushed = 1;
+        old = isListOld(solve, &state, &at, sweep, &moved2);
     }
+    return pushed;
 }
 
-// Visits the features of some batches. Returns the worst violation that the work-item met, m.
-DRAPE_RARE_FUNCTION float sweepBatches(const Solve* solve, const SolveRange range, const Sweep* sweep)
+// Projects the contacts of a feature that act in this stage, in order.
+static void visitActing(const Solve* solve, const uint index, const Sweep* sweep)
 {
+    const SolveFeatureState state = loadState(solve, index);
+    if (state.m_listCount == 0) return;
+    const SolveFeature feature = loadFeature(solve, index);
+    Displacements at = displacementsOf(solve, &feature);
     float worst = 0.0f;
-    for (uint i = 0; i < range.m_count; ++i)
+    for (uint i = 0; i < state.m_listCount; ++i)
     {
-        const SolveBatch batch = solve->m_batches[range.m_first + i];
-        if (!batch.m_serial)
-            for (uint k = batch.m_first + get_local_id(0); k < batch.m_last; k += get_local_size(0))
-                visitFeature(solve, k, sweep, &worst);
-        else if (get_local_id(0) == 0)
-            for (uint k = batch.m_first; k < batch.m_last; ++k)
-                visitFeature(solve, k, sweep, &worst);
-        syncNodes();
+        const uint contact = solve->m_lists[feature.m_firstContact + i];
+        SolvePlane plane = loadPlane(solve, contact);
+        if (plane.m_pushing != sweep->m_stage) continue;
+        plane.m_flags &= ~DRAPE_PLANE_TURNS;
+        projectContact(solve, &feature, contact, &plane, sweep, &at, &worst);
     }
-    return worst;
 }
 
+static int visitFeatureOf(const Solve* solve, const uint index, const Sweep* sweep, const int acting, float* worst)
+{
+    if (!acting) return visitFeature(solve, index, sweep, worst);
+    visitActing(solve, index, sweep);
+    return 0;
+}
+
+// Visits the features of a batch, or only their contacts that act. `worst` grows to the worst violation that the
+// work-item met, m.
+DRAPE_RARE_FUNCTION void sweepBatch(const Solve* solve, const uint index, const Sweep* sweep, const int acting,
+                                    float* worst)
+{
+    const uint recorded = index - solve->m_cloth->m_faceBatches.m_first;
+    if (acting && recorded < DRAPE_RECORDED_BATCHES && solve->m_pushingBatches[recorded] != sweep->m_stage) return;
+    const SolveBatch batch = solve->m_batches[index];
+    int pushed = 0;
+    if (!batch.m_serial)
+        for (uint k = batch.m_first + get_local_id(0); k < batch.m_last; k += get_local_size(0))
+            pushed |= visitFeatureOf(solve, k, sweep, acting, worst);
+    else if (get_local_id(0) == 0)
+        for (uint k = batch.m_first; k < batch.m_last; ++k)
+            pushed |= visitFeatureOf(solve, k, sweep, acting, worst);
+    if (pushed && recorded < DRAPE_RECORDED_BATCHES) solve->m_pushingBatches[recorded] = sweep->m_stage;
+    syncNodes();
+}
+
+static void sweepBatches(const Solve* solve, const SolveRange range, const Sweep* sweep, float* worst)
+{
+    for (uint i = range.m_first; i < range.m_first + range.m_count; ++i)
+        sweepBatch(solve, i, sweep, 0, worst);
+}
+
+// Visits the batches of a level.
+static void sweepLevel(const Solve* solve, const SolveRange range, const uint level, const Sweep* sweep,
+                       const int acting, float* worst)
+{
+    for (uint i = range.m_first; i < range.m_first + range.m_count; ++i)
+        if (solve->m_batches[i].m_level == level) sweepBatch(solve, i, sweep, acting, worst);
+}
+
+// Returns the worst violation that the work-item met, m.
 static float sweepContacts(const Solve* solve, const Sweep* sweep)
 {
-    const float first = sweepBatches(solve, solve->m_cloth->m_faceBatches, sweep);
-    return drapeMax(first, sweepBatches(solve, solve->m_cloth->m_edgeBatches, sweep));
+    __global const SolveCloth* cloth = solve->m_cloth;
+    float worst = 0.0f, met = 0.0f;
+    sweepBatches(solve, cloth->m_faceBatches, sweep, &worst);
+    for (uint level = 0; level < cloth->m_levels; ++level)
+    {
+        sweepLevel(solve, cloth->m_edgeBatches, level, sweep, 0, &worst);
+        for (uint i = 0; i < sweep->m_actingSweeps; ++i)
+        {
+            sweepLevel(solve, cloth->m_faceBatches, level, sweep, 1, &met);
+            sweepLevel(solve, cloth->m_edgeBatches, level, sweep, 1, &met);
+        }
+    }
+    return worst;
 }
 
 // Sets the bounding planes of a feature's contacts, and marks its nodes.
@@ -471,8 +533,8 @@ static void beginFeature(const Solve* solve, const uint index)
         const ContactPlane found = foundPlane(solve->m_contacts + i);
         Vec3 start = first;
         for (uint k = 1; k < feature.m_nodeCount; ++k)
-            start = vec3AddScaled(start, vec3Sub(solve->m_paths[feature.m_nodes[k]].m_start, first),
-                                  found.m_weights[k]);
+            start =
+                vec3AddScaled(start, vec3Sub(solve->m_paths[feature.m_nodes[k]].m_start, first), found.m_weights[k]);
         SolvePlane plane;
         plane.m_normal = found.m_normal;
         plane.m_level = solve->m_cloth->m_mostThickness + vec3Dot(found.m_normal, vec3Sub(found.m_point, start)) +
@@ -496,7 +558,7 @@ static void beginFeature(const Solve* solve, const uint index)
 static void beginStep(const Solve* solve)
 {
     __global const SolveCloth* cloth = solve->m_cloth;
-    forAll (i, cloth->m_nodes.m_count)
+    forAll(i, cloth->m_nodes.m_count)
     {
         const NodePath path = solve->m_paths[i];
         solve->m_nodes[i].m_inverseMass = path.m_freeMass;
@@ -506,9 +568,8 @@ static void beginStep(const Solve* solve)
         solve->m_allowances[i].m_hasContact = 0;
     }
     syncAll();
-    forAll (i, cloth->m_features.m_count)
-        beginFeature(solve, cloth->m_features.m_first + i);
-    forAll (i, cloth->m_links.m_count)
+    forAll(i, cloth->m_features.m_count) beginFeature(solve, cloth->m_features.m_first + i);
+    forAll(i, cloth->m_links.m_count)
     {
         const uint link = cloth->m_links.m_first + i;
         const SolveLink joined = solve->m_links[link];
@@ -544,7 +605,7 @@ DRAPE_RARE_FUNCTION int isNearRegion(const Solve* solve, const uint node, __glob
 DRAPE_RARE_FUNCTION void limitByResting(const Solve* solve, const int withContacts)
 {
     const SolveRange regions = solve->m_cloth->m_regions;
-    forAll (node, solve->m_cloth->m_nodes.m_count)
+    forAll(node, solve->m_cloth->m_nodes.m_count)
     {
         if (!solve->m_states[node].m_isFar) continue;
         __global SolveAllowance* allowance = solve->m_allowances + node;
@@ -562,7 +623,7 @@ DRAPE_RARE_FUNCTION void limitByResting(const Solve* solve, const int withContac
         allowance->m_end = end;
     }
     syncNodes();
-    forAll (node, solve->m_cloth->m_nodes.m_count)
+    forAll(node, solve->m_cloth->m_nodes.m_count)
     {
         const SolveAllowance allowance = solve->m_allowances[node];
         if (!solve->m_states[node].m_isFar || allowance.m_end == DRAPE_INFINITY) continue;
@@ -574,11 +635,10 @@ DRAPE_RARE_FUNCTION void limitByResting(const Solve* solve, const int withContac
 
 DRAPE_RARE_FUNCTION void limitByMoving(const Solve* solve, __global const SolveRegion* region)
 {
-    forAll (node, solve->m_cloth->m_nodes.m_count)
-        solve->m_allowances[node].m_isNear =
-            solve->m_states[node].m_isFar ? isNearRegion(solve, node, region) : 0;
+    forAll(node, solve->m_cloth->m_nodes.m_count) solve->m_allowances[node].m_isNear =
+        solve->m_states[node].m_isFar ? isNearRegion(solve, node, region) : 0;
     syncNodes();
-    forAll (node, solve->m_cloth->m_nodes.m_count)
+    forAll(node, solve->m_cloth->m_nodes.m_count)
     {
         if (!solve->m_allowances[node].m_isNear) continue;
         const Vec3 from = solve->m_paths[node].m_start;
@@ -594,7 +654,7 @@ DRAPE_RARE_FUNCTION void limitByMoving(const Solve* solve, __global const SolveR
 DRAPE_RARE_FUNCTION int findFarNodes(const Solve* solve, __local uint* shared)
 {
     int any = 0;
-    forAll (node, solve->m_cloth->m_nodes.m_count)
+    forAll(node, solve->m_cloth->m_nodes.m_count)
     {
         const int far = isFarFromEnd(solve->m_nodes + node, solve->m_paths + node, solve->m_cloth->m_sure);
         solve->m_states[node].m_isFar = far;
@@ -617,7 +677,7 @@ static void applyLimits(const Solve* solve, __local uint* shared)
 static void keepNear(const Solve* solve)
 {
     __global const SolveCloth* cloth = solve->m_cloth;
-    forAll (node, cloth->m_nodes.m_count)
+    forAll(node, cloth->m_nodes.m_count)
     {
         if (!solve->m_allowances[node].m_hasContact) continue;
         if (!isFarFromEnd(solve->m_nodes + node, solve->m_paths + node, cloth->m_sure)) continue;
@@ -630,14 +690,14 @@ static void keepNear(const Solve* solve)
 static void runSubstep(const Solve* solve, const uint substep, __local uint* shared)
 {
     __global const SolveCloth* cloth = solve->m_cloth;
-    forAll (i, cloth->m_nodes.m_count)
+    forAll(i, cloth->m_nodes.m_count)
         nodeAdvance(solve->m_nodes + i, solve->m_states + i, solve->m_accelerations[i], cloth->m_substepTime);
     syncNodes();
     // Limits beside a moving obstacle hold at the step's end alone.
     if (substep > 0 && (cloth->m_rests || substep + 1 == cloth->m_substeps))
     {
         applyLimits(solve, shared);
-        forAll (i, cloth->m_nodes.m_count)
+        forAll(i, cloth->m_nodes.m_count)
             nodeLimitShift(solve->m_nodes + i, solve->m_states + i, cloth->m_perCorrection, cloth->m_perSecond);
         syncNodes();
     }
@@ -645,12 +705,14 @@ static void runSubstep(const Solve* solve, const uint substep, __local uint* sha
     sweep.m_stage = substep + 1;
     sweep.m_passed = (float)(substep + 1) / (float)cloth->m_substeps;
     sweep.m_slack = (1.0f - sweep.m_passed) * cloth->m_retreat;
+    sweep.m_relaxation = DRAPE_TURN_RELAXATION;
+    sweep.m_actingSweeps = cloth->m_actingSweeps;
     for (uint i = 0; i < cloth->m_linkSweeps; ++i)
     {
         sweepLinks(solve);
         sweepContacts(solve, &sweep);
     }
-    forAll (i, cloth->m_nodes.m_count)
+    forAll(i, cloth->m_nodes.m_count)
         nodeEnd(solve->m_nodes + i, solve->m_states + i, cloth->m_perCorrection, cloth->m_kept);
     syncNodes();
 }
@@ -670,6 +732,8 @@ static uint closeContacts(const Solve* solve, __local uint* shared)
     sweep.m_stage = cloth->m_substeps + 1;
     sweep.m_passed = 1.0f;
     sweep.m_slack = 0.0f;
+    sweep.m_relaxation = 1.0f;
+    sweep.m_actingSweeps = 0;
     float worst = mostInGroup(sweepContacts(solve, &sweep), shared);
     uint done = 1;
     for (; isOpen(cloth, done, worst); ++done)
@@ -681,7 +745,8 @@ static uint closeContacts(const Solve* solve, __local uint* shared)
         worst = mostInGroup(sweepContacts(solve, &sweep), shared);
     }
     // Nodes go last: see StepSolver::close().
-    if (worst > cloth->m_fineViolation) sweepBatches(solve, cloth->m_nodeBatches, &sweep);
+    float met = 0.0f;
+    if (worst > cloth->m_fineViolation) sweepBatches(solve, cloth->m_nodeBatches, &sweep, &met);
     if (cloth->m_rests && findFarNodes(solve, shared)) limitByResting(solve, 0);
     return done;
 }
@@ -695,8 +760,9 @@ DRAPE_RARE_FUNCTION int limitSpeeds(const Solve* solve, const SolveRange range)
     {
         const SolveBatch batch = solve->m_batches[range.m_first + b];
         const uint step = batch.m_serial ? 1 : get_local_size(0);
-        const uint first = batch.m_serial && get_local_id(0) != 0 ? batch.m_last
-                                                                   : batch.m_first + (batch.m_serial ? 0 : get_local_id(0));
+        const uint first = batch.m_serial && get_local_id(0) != 0
+                               ? batch.m_last
+                               : batch.m_first + (batch.m_serial ? 0 : get_local_id(0));
         for (uint k = first; k < batch.m_last; k += step)
         {
             const SolveFeature feature = loadFeature(solve, k);
@@ -723,7 +789,7 @@ DRAPE_RARE_FUNCTION int limitSpeeds(const Solve* solve, const SolveRange range)
 #endif
 __kernel __attribute__((reqd_work_group_size(DRAPE_SOLVE_GROUP, 1, 1))) void solveCloths(DRAPE_SOLVE_CLOTHS)
 {
-    __local uint shared;
+    __local uint shared, pushingBatches[DRAPE_RECORDED_BATCHES];
     Solve solve;
     __global const SolveCloth* cloth = (__global const SolveCloth*)(input + layout.m_cloths) + get_group_id(0);
     const uint firstNode = cloth->m_nodes.m_first;
@@ -741,6 +807,8 @@ __kernel __attribute__((reqd_work_group_size(DRAPE_SOLVE_GROUP, 1, 1))) void sol
     solve.m_faces = (__global const int*)(topology + layout.m_faces);
     solve.m_contacts = contacts;
     solve.m_nodes = nodes;
+    solve.m_pushingBatches = pushingBatches;
+    forAll(i, DRAPE_RECORDED_BATCHES) pushingBatches[i] = 0;
     solve.m_states = (__global NodeState*)(work + layout.m_states) + firstNode;
     solve.m_planes = (__global SolvePlane*)(work + layout.m_planes);
     solve.m_acting = (__global ActingContact*)(work + layout.m_acting);
@@ -752,18 +820,15 @@ __kernel __attribute__((reqd_work_group_size(DRAPE_SOLVE_GROUP, 1, 1))) void sol
     beginStep(&solve);
     for (uint i = 0; i < cloth->m_substeps; ++i)
         runSubstep(&solve, i, &shared);
-    forAll (i, cloth->m_nodes.m_count)
-        nodeRemember(solve.m_nodes + i, solve.m_states + i);
+    forAll(i, cloth->m_nodes.m_count) nodeRemember(solve.m_nodes + i, solve.m_states + i);
     syncNodes();
     applyLimits(&solve, &shared);
     const uint sweeps = cloth->m_features.m_count > 0 ? closeContacts(&solve, &shared) : 0;
     syncAll();
-    forAll (i, cloth->m_nodes.m_count)
-        nodeAddShift(solve.m_nodes + i, solve.m_states + i, cloth->m_perShift);
+    forAll(i, cloth->m_nodes.m_count) nodeAddShift(solve.m_nodes + i, solve.m_states + i, cloth->m_perShift);
     syncAll();
     __global SolverNode* ends = (__global SolverNode*)(work + layout.m_nodes) + firstNode;
-    forAll (i, cloth->m_nodes.m_count)
-        ends[i] = nodes[i];
+    forAll(i, cloth->m_nodes.m_count) ends[i] = nodes[i];
     int near = limitSpeeds(&solve, cloth->m_faceBatches);
     near |= limitSpeeds(&solve, cloth->m_edgeBatches);
     near = anyInGroup(near, &shared);

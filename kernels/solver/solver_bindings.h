@@ -7,7 +7,7 @@
 #include "../shared/contact.h"
 #include "../shared/solve_step.h"
 
-#define DRAPE_SOLVE_CLOTHS                                                                                       \
+#define DRAPE_SOLVE_CLOTHS                                                                                          \
     DRAPE_VALUE(SolveLayout, layout), DRAPE_READS(SolveInputWord, input), DRAPE_READS(SolveTopologyWord, topology), \
         DRAPE_READS(Contact, contacts), DRAPE_UPDATES(SolveWorkWord, work), DRAPE_LOCAL(SolverNode, nodes)
 

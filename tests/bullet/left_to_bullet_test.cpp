@@ -55,7 +55,9 @@ Outcome run(Plugin* plugin, const std::vector<Placed>& obstacles, MakeBodies mak
 
 void expectStockBits(const std::vector<Placed>& obstacles, MakeBodies make, int steps)
 {
-    Plugin plugin(hostSettings());
+    Settings settings = hostSettings();
+    settings.m_solver = Solver::Bullet;
+    Plugin plugin(settings);
     const Outcome stock = run(nullptr, obstacles, make, steps), drape = run(&plugin, obstacles, make, steps);
     EXPECT_EQ(stock.m_hash, drape.m_hash);
     EXPECT_EQ(stock.m_mostPairs, drape.m_mostPairs);

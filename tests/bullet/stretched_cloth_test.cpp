@@ -223,12 +223,18 @@ public:
     {
         m_body.setWorldTransform(m_pose);
         std::uint64_t most = 0;
+        int leftOut = 0;
         for (int step = 0; step < 300; ++step)
         {
             m_world.step();
-            most = std::max(most, m_plugin.statistics().m_candidates);
+            // A cloth that is left out counts candidates that nobody tests.
+            if (m_plugin.statistics().m_clothsLeftOut > 0)
+                ++leftOut;
+            else
+                most = std::max(most, m_plugin.statistics().m_candidates);
         }
         EXPECT_LT(most, 1000000u);
+        EXPECT_LE(leftOut, 1);
         EXPECT_EQ(m_plugin.statistics().m_status, std::uint32_t(kStepGood));
         for (int i = 0; i < m_cape.m_nodes.size(); ++i)
             ASSERT_LT((m_cape.m_nodes[i].m_x - m_pose.getOrigin()).length(), 2) << i;

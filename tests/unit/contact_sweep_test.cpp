@@ -32,7 +32,7 @@ struct SweepCase
     std::string m_name;
     Motion m_motion;
     unsigned m_threads;
-    bool m_inParts;  // each stage runs later in the step; else at the step's end
+    bool m_inParts;  // each stage runs later in the step, in turns with links; else at the step's end
 };
 
 // Writes a rotation by 0.02 about (1, 2, 3) and a shift.
@@ -104,7 +104,7 @@ public:
         surface.m_moves = motion == Motion::Turns;
         writeTurn(surface.m_map);
         surface.m_friction = 0.5f;
-        m_source.setPipeline(*m_pipeline);
+        m_source.setPipeline(*m_pipeline, {});
         m_source.nameObstacle(ground, surface);
         m_starts = deformed(m_cloth.m_nodes);
         if (motion == Motion::Deforms) m_source.nameStarts(cloth, m_starts.data());
@@ -180,8 +180,8 @@ void runBoth(SweepTeam& team, ContactSweep& sweep, PlainSweep& plain, std::size_
     if (at % kStage == 0)
     {
         const float passed = inParts ? float(at / kStage + 1) / float(kSweeps / kStage) : 1;
-        sweep.restart(passed);
-        plain.restart(passed);
+        sweep.restart(passed, inParts ? DRAPE_ACTING_SWEEPS : 0);
+        plain.restart(passed, inParts);
     }
     if (at % kStage == 2)
     {

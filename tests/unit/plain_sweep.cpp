@@ -73,9 +73,10 @@ PlainSweep::Kind PlainSweep::kindOf(const SolverContact& contact)
     return contact.m_nodes[2] < 0 ? Kind::Edge : Kind::Face;
 }
 
-void PlainSweep::restart(float passed)
+void PlainSweep::restart(float passed, bool inTurns)
 {
     m_passed = passed;
+    m_inTurns = inTurns;
     for (Row& row : m_rows)
     {
         row.m_multiplier = 0;
@@ -96,6 +97,30 @@ float PlainSweep::sweep(std::initializer_list<Kind> kinds)
     return worst;
 }
 
+// Sweeps over the edges of each group, and then over the group's acting contacts.
+float PlainSweep::sweepEdges()
+{
+    float worst = 0;
+    for (std::size_t i = 0; i < m_rows.size(); ++i)
+    {
+        Row& row = m_rows[i];
+        if (kindOf(row.m_contact) == Kind::Edge)
+        {
+            renewPlane(row);
+            worst = std::max(worst, project(row));
+        }
+        if (i + 1 == m_rows.size() || m_rows[i + 1].m_group != row.m_group) sweepActing(row.m_group);
+    }
+    return worst;
+}
+
+void PlainSweep::sweepActing(std::size_t group)
+{
+    for (int i = 0; m_inTurns && i < DRAPE_ACTING_SWEEPS; ++i)
+        for (Row& row : m_rows)
+            if (row.m_group == group && row.m_acted) project(row);
+}
+
 void PlainSweep::addVelocities(const std::vector<Vec3>& before)
 {
     for (std::size_t i = 0; i < m_places.size(); ++i)
@@ -105,7 +130,7 @@ void PlainSweep::addVelocities(const std::vector<Vec3>& before)
 float PlainSweep::run()
 {
     const std::vector<Vec3> before = m_places;
-    const float first = sweep({Kind::Node, Kind::Face}), second = sweep({Kind::Edge});
+    const float first = sweep({Kind::Node, Kind::Face}), second = sweepEdges();
     addVelocities(before);
     return std::max(first, second);
 }
@@ -211,12 +236,16 @@ float PlainSweep::mobilityOf(const SolverContact& contact) const
     return mobility;
 }
 
-// Returns the share of the contact's point that belongs to fixed nodes.
+// Returns the share of the contact's point that belongs to fixed nodes, and in part to those that are ten times heavier
+// than the lightest one.
 float PlainSweep::heldShareOf(const SolverContact& contact) const
 {
-    float held = 0;
+    float held = 0, most = 0;
     for (int k = 0; k < 3 && contact.m_nodes[k] >= 0; ++k)
-        if (m_paths.inverseMass(nodeOf(contact, k)) == 0) held += contact.m_plane.m_weights[k];
+        most = std::max(most, m_paths.inverseMass(nodeOf(contact, k)));
+    for (int k = 0; k < 3 && contact.m_nodes[k] >= 0; ++k)
+        held += std::max(0.0f, 1 - m_paths.inverseMass(nodeOf(contact, k)) / (DRAPE_HEAVY_SHARE * most)) *
+                contact.m_plane.m_weights[k];
     return held;
 }
 
@@ -263,7 +292,8 @@ float PlainSweep::project(Row& row)
     if (!row.m_acted && !(violationOf(contact, 1) > 0)) ++m_early;
     row.m_acted = row.m_everActed = true;
     const float inverse = 1 / mobility;
-    const float pushed = std::max(0.0f, row.m_multiplier + violation * inverse);
+    const float pushed =
+        std::max(0.0f, row.m_multiplier + (m_inTurns ? DRAPE_TURN_RELAXATION : 1.0f) * violation * inverse);
 
     const Vec3 way = pointOf(contact, m_places), carried = carriedFrom(contact);
     const Vec3 slid = vec3Sub(way, vec3Scale(normal, vec3Dot(normal, way)));

@@ -19,8 +19,8 @@ public:
     // which begin where the cloth's are.
     PlainSweep(const ClothContacts& cloth, const ContactSource& source, const std::vector<Contact>& contacts);
 
-    // Begins a stage, with no pushes. passed: the share of the step that has passed.
-    void restart(float passed);
+    // Begins a stage, with no pushes. passed: the share of the step that has passed. inTurns: see ContactSweep.
+    void restart(float passed, bool inTurns);
     void move(std::size_t node, Vec3 by) { m_places[node] = vec3Add(m_places[node], by); }
     // Sweep once, and return the worst violation that a push can correct, m.
     float run();
@@ -63,6 +63,8 @@ private:
     void sortRows(const ClothParts& parts);
     float sweep(std::initializer_list<Kind> kinds);
     void limitSpeed(const Row& row);
+    float sweepEdges();
+    void sweepActing(std::size_t group);
     void addVelocities(const std::vector<Vec3>& before);
     Vec3 pointOf(const SolverContact& contact, const std::vector<Vec3>& places) const;
     Vec3 carriedFrom(const SolverContact& contact) const;
@@ -80,6 +82,7 @@ private:
     std::vector<Row> m_rows;
     float m_perSecond, m_leastThickness;
     float m_passed = 1;
+    bool m_inTurns = false;
     std::size_t m_renewals = 0, m_slowed = 0, m_early = 0;
 };
 }  // namespace drape::test

@@ -114,7 +114,7 @@ void addBackendOptions(CLI::App& app, Options& options, std::string& mode)
     acceptOnly(app.add_option("--mode", options.m_contactMode, "how Drape treats motion within a step"),
                {"discrete", "continuous", "automatic"});
     acceptOnly(app.add_option("--solver", options.m_solver,
-                              "who solves the cloth's links; drape: in substeps, with less stretch; auto: bullet"),
+                              "who solves the cloth's links; drape: in substeps, with less stretch; auto: drape"),
                {"auto", "drape", "bullet"});
     acceptOnly(app.add_option("--solver-place", options.m_solverPlace,
                               "where Drape's solver computes; auto: a GPU for large cloth, else the host"),

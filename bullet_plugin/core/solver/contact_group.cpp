@@ -166,7 +166,8 @@ bool ContactGroup::project(const SweptCloth& cloth, ActingContact& acting, float
 {
     SolverNodes& nodes = cloth.nodes();
     ContactRow& row = acting.m_row;
-    if (!projectRow(&row, nodes.nodes(), cloth.m_passed, &worst)) return false;
+    const float relaxation = cloth.m_actingSweeps > 0 ? DRAPE_TURN_RELAXATION : 1.0f;
+    if (!projectRow(&row, nodes.nodes(), cloth.m_passed, relaxation, &worst)) return false;
     for (std::uint32_t k = 0; k < row.m_count; ++k)
         nodes.markShifted(row.m_nodes[k]);
     acting.m_pushed = 1;
@@ -270,6 +271,16 @@ float ContactGroup::sweep(const SweptCloth& cloth, Kinds kinds)
             worst = std::max(worst, projectBlock(cloth, i, bitsAbove0(excess) | pushing[i]));
     }
     return worst;
+}
+
+void ContactGroup::sweepActing(const SweptCloth& cloth)
+{
+    std::sort(m_pushingBlocks.begin(), m_pushingBlocks.end());
+    float worst = 0;
+    for (int i = 0; i < cloth.m_actingSweeps; ++i)
+        for (const std::size_t index : m_pushingBlocks)
+            for (unsigned lane = 0, pushing = m_pushing[index]; pushing != 0; ++lane, pushing >>= 1)
+                if (pushing & 1u) project(cloth, m_rows[std::size_t(m_rowsOf[index].m_row[lane])].m_acting, worst);
 }
 
 void ContactGroup::limitSpeeds(const SweptCloth& cloth, Kinds kinds) const

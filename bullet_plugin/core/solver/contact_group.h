@@ -25,10 +25,11 @@ struct SweptCloth
 {
     ClothContacts* m_contacts = nullptr;
     const ContactSource* m_source = nullptr;
-    float m_margin = 0;    // m, rounding margin of the blocks' levels
-    float m_retreat = 0;   // m, bound on the displacement of a node by an obstacle's motion
-    float m_passed = 1;    // share of the step that has passed
-    unsigned m_stage = 0;  // see ContactSweep::restart()
+    float m_margin = 0;      // m, rounding margin of the blocks' levels
+    float m_retreat = 0;     // m, bound on the displacement of a node by an obstacle's motion
+    float m_passed = 1;      // share of the step that has passed
+    int m_actingSweeps = 0;  // see ContactSweep::restart()
+    unsigned m_stage = 0;    // see ContactSweep::restart()
 
     SolverNodes& nodes() const { return m_contacts->m_nodes; }
     // Bound on how far levels lie above those at the step's end, m.
@@ -59,6 +60,8 @@ public:
     // Tests every contact of these features once and projects those that are due. Returns the worst violation met, m,
     // as far as the contact's nodes can correct it. A new stage begins with no pushes.
     float sweep(const SweptCloth& cloth, Kinds kinds);
+    // Projects the contacts that act in this stage m_actingSweeps times, in the order of sweeps.
+    void sweepActing(const SweptCloth& cloth);
     // Removes from the nodes' velocities what a contact gained by recovering a depth that the step began with.
     void limitSpeeds(const SweptCloth& cloth, Kinds kinds) const;
     // Returns whether a contact that has pushed ends with less than kNearShare of the thickness between its features'

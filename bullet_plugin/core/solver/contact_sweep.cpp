@@ -86,6 +86,7 @@ void ContactSweep::work(std::size_t index, Pass pass)
             return;
         case Pass::Edges:
             m_worst[index] = std::max(m_worst[index], group.sweep(m_cloth, ContactGroup::Kinds::Edges));
+            if (m_cloth.m_actingSweeps > 0) group.sweepActing(m_cloth);
             return;
         case Pass::LimitSpeeds:
             return group.limitSpeeds(m_cloth, ContactGroup::Kinds::NodesAndFaces);

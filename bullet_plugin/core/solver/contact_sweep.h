@@ -34,8 +34,11 @@ public:
     // Prepares the cloth once after assign(). SweepTeam::start() does the rest.
     void begin();
     // Begins a stage, with no pushes. passed: the share of the step that has passed, up to 1; obstacles stand there.
-    void restart(float passed)
+    // actingSweeps: after each sweep; 0 unless links are swept in turns with the contacts, which then share their loads
+    // (kernels/lib/contact_row.h).
+    void restart(float passed, int actingSweeps = 0)
     {
+        m_cloth.m_actingSweeps = actingSweeps;
         ++m_cloth.m_stage;
         m_cloth.m_passed = passed;
     }

@@ -84,12 +84,11 @@ void PackedStep::packLinks(const LinkSweep& links, std::uint32_t leafCount, Clot
     cloth.m_linkBatches.m_first = std::uint32_t(m_linkBatches.size());
     for (std::uint32_t key = 0; key + 1 < firsts.size(); ++key)
         if (firsts[key] < firsts[key + 1])
-            m_linkBatches.push_back({firsts[key], firsts[key + 1], key % kColours == kLastColour});
+            m_linkBatches.push_back({firsts[key], firsts[key + 1], key % kColours == kLastColour, key / kColours});
     cloth.m_linkBatches.m_count = std::uint32_t(m_linkBatches.size()) - cloth.m_linkBatches.m_first;
     m_links.resize(firsts.back());
     links.forLinks(
-        [&](std::uint32_t group, std::uint32_t colour, const std::uint32_t* nodes, float restSquared, float strength)
-        {
+        [&](std::uint32_t group, std::uint32_t colour, const std::uint32_t* nodes, float restSquared, float strength) {
             m_links[firsts[keyOf(group, colour)]++] = {{nodes[0], nodes[1]}, restSquared, strength};
         });
 }
@@ -177,7 +176,8 @@ void PackedStep::addBatches(SolveCloth& cloth, std::uint32_t levels)
         {
             const bool isNode = key / kColours % kKinds == 0;
             if (m_firsts[key] == m_firsts[key + 1] || (nodesAlone && !isNode)) continue;
-            m_batches.push_back({m_firsts[key], m_firsts[key + 1], key % kColours == kLastColour});
+            m_batches.push_back(
+                {m_firsts[key], m_firsts[key + 1], key % kColours == kLastColour, key / kColours / kKinds % levels});
             ++range.m_count;
         }
         return range;
@@ -221,13 +221,13 @@ void PackedStep::packFeatures(const ClothContacts& contacts, const ContactSource
         const std::size_t obstacle = source.obstacleSlot(contact);
         if (obstacle == slot) return surface;
         slot = obstacle;
-        const auto known = std::find_if(surfaces.begin(), surfaces.end(),
-                                        [&](const auto& entry) { return entry.first == obstacle; });
+        const auto known =
+            std::find_if(surfaces.begin(), surfaces.end(), [&](const auto& entry) { return entry.first == obstacle; });
         if (known != surfaces.end()) return surface = known->second;
         const ContactView view = source.view(contact);
         const ObstacleSurface& named = source.surfaceOf(view.m_obstacle);
-        surface = addSurface(named.m_moves ? named.m_map : nullptr, view.m_thickness,
-                             contacts.m_friction * named.m_friction);
+        surface =
+            addSurface(named.m_moves ? named.m_map : nullptr, view.m_thickness, contacts.m_friction * named.m_friction);
         surfaces.emplace_back(obstacle, surface);
         return surface;
     };
@@ -262,6 +262,8 @@ void PackedStep::packCloth(std::size_t index, const ContactSource& source)
     cloth.m_substeps = std::uint32_t(substeps.count());
     cloth.m_linkSweeps = Substeps::kLinkSweeps;
     cloth.m_leastClosing = kClosingSweeps;
+    cloth.m_levels = levelOf(contacts.m_parts->leafCount()) + 1;
+    cloth.m_actingSweeps = std::uint32_t(actingSweepsOf(substeps.count()));
     cloth.m_rests = limit.obstaclesRest() ? 1 : 0;
     cloth.m_substepTime = substeps.substepTime();
     cloth.m_perStep = substeps.perStep();

@@ -134,7 +134,7 @@ void StepSolver::restart(int iteration)
     {
         const SolverCloth& cloth = sweep->cloth();
         const float passed = cloth.m_substeps ? float(iteration + 1) / float(cloth.m_substeps->count()) : 1.0f;
-        sweep->restart(passed);
+        sweep->restart(passed, cloth.m_substeps ? actingSweepsOf(cloth.m_substeps->count()) : 0);
         if (!cloth.m_rigid) continue;
         cloth.m_rigid->begin(cloth.m_substeps->substepTime(), cloth.m_substeps->correctionTime(), passed);
     }

@@ -35,6 +35,12 @@ constexpr int kClosingSweeps = 8;
 constexpr std::size_t kFurtherBlocks = std::size_t(1) << 16;
 constexpr std::size_t kLeastFurther = 24, kMostFurther = 120;
 
+// Returns the number of sweeps over acting contacts after each sweep in turns with links, for so many substeps.
+inline int actingSweepsOf(int substeps)
+{
+    return std::max(DRAPE_ACTING_SWEEPS, DRAPE_ACTING_IN_STEP / substeps);
+}
+
 // Returns the maximum number of closing sweeps over so many contact blocks.
 inline int mostClosingSweeps(std::size_t blocks)
 {
@@ -57,8 +63,8 @@ public:
     // Cloths with ForeignLinks are written back; nodes of others stay where the solver leaves them. free: cloths
     // without contacts, limits or rigid rows. stage: solves the cloths that fit (PackedStep); null if there is none.
     // If the device fails, the host solves them all.
-    void solve(const std::vector<SolverCloth>& cloths, const std::vector<SolverCloth>& free, const ContactSource& source,
-               SolveStage* stage = nullptr);
+    void solve(const std::vector<SolverCloth>& cloths, const std::vector<SolverCloth>& free,
+               const ContactSource& source, SolveStage* stage = nullptr);
     // Runs the closing sweeps alone, for cloths whose nodes are at the ends of the paths along which their contacts
     // were found.
     void close(const std::vector<SolverCloth>& cloths, const ContactSource& source);
