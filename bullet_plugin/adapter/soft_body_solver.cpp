@@ -357,9 +357,10 @@ void SoftBodySolver::solveBodies(StepParts& parts)
     parts.m_readMs += watch.lapMs();
     std::size_t nodes = 0;
     for (const auto& end : work.m_ends)
-        nodes += end.second->count();
-    SolveStage* const stage = m_state->pipeline().solveStage(nodes);
-    work.m_solver->solve(work.m_touched, work.m_free, m_state->m_found.source(), stage);
+        if (end.second->count() <= SolveStage::kMostNodes) nodes += end.second->count();
+    SolveStage* const stage = nodes > 0 ? m_state->pipeline().solveStage(nodes) : nullptr;
+    m_state->m_statistics.m_clothsOnDevice =
+        work.m_solver->solve(work.m_touched, work.m_free, m_state->m_found.source(), stage);
     double linksMs = 0;
     for (const std::unique_ptr<BulletLinks>& links : work.m_bulletLinks)
         linksMs += links->ms();

@@ -31,10 +31,10 @@ typedef struct FeatureNodes
     Vec3 m_carried[3];      // m, where the obstacle's motion in the step carries the starts
     Vec3 m_ends[3];         // m, of the predicted paths
     float m_inverseMasses[3];
-    int m_moves;  // whether the obstacle moves
+    int m_moves;  // true if the obstacle moves
 } FeatureNodes;
 
-// What a contact's row is made of, beside its plane.
+// Properties of a contact's row beside its plane.
 typedef struct ContactSettings
 {
     float m_thickness;  // m

@@ -45,9 +45,9 @@ typedef struct SolveCloth
     DRAPE_UINT m_linkSweeps;    // in each substep, each with a sweep over the contacts
     DRAPE_UINT m_leastClosing;  // closing sweeps up to which the finer tolerance counts
     DRAPE_UINT m_mostClosing;
-    DRAPE_UINT m_levels;        // of the cloth's groups
+    DRAPE_UINT m_levels;        // levels of the cloth's groups
     DRAPE_UINT m_actingSweeps;  // see ContactSweep::restart()
-    DRAPE_UINT m_rests;         // whether all obstacles rest
+    DRAPE_UINT m_rests;         // true if all obstacles rest
     float m_substepTime;        // s
     float m_perStep;            // 1/s
     float m_pathShare;          // s, see nodeBegin()
@@ -71,7 +71,7 @@ typedef struct SolveBatch
 {
     DRAPE_UINT m_first, m_last;
     DRAPE_UINT m_serial;  // they may share nodes: one after the other
-    DRAPE_UINT m_level;   // of their groups, from the leaves on
+    DRAPE_UINT m_level;   // level of their groups, from the leaves on
 } SolveBatch;
 
 typedef struct SolveLink
@@ -90,7 +90,8 @@ typedef struct SolveFeature
     DRAPE_UINT m_unused[2];
 } SolveFeature;
 
-// What contacts of a cloth with one obstacle have in common. m_map: the motion, three rows of rotation and shift.
+// Properties that contacts of a cloth with one obstacle have in common. m_map: the motion, three rows of rotation and
+// shift.
 typedef struct SolveSurface
 {
     float m_map[12];
@@ -151,8 +152,8 @@ typedef struct SolveAllowance
 // A result, by cloth.
 typedef struct SolveResult
 {
-    DRAPE_UINT m_mayHavePassed;  // whether a contact ends so near that a surface may have been passed
-    DRAPE_UINT m_closingSweeps;  // that were made
+    DRAPE_UINT m_mayHavePassed;  // true if a contact ends so near that a surface may have been passed
+    DRAPE_UINT m_closingSweeps;  // closing sweeps that were made
 } SolveResult;
 
 // Positions of the arrays, in words.

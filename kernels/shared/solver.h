@@ -34,11 +34,11 @@ typedef struct NodePath
     float m_freeMass;     // 1/kg, the inverse mass as links see it
 } NodePath;
 
-// What a node has beside its displacement.
+// Properties of a node beside its displacement.
 typedef struct NodeState
 {
     Vec3 m_velocity;       // m/s
-    DRAPE_UINT m_shifted;  // whether it was moved since its displacement was remembered
+    DRAPE_UINT m_shifted;  // true if it was moved since its displacement was remembered
     Vec3 m_before;         // m, the displacement that was remembered
     DRAPE_UINT m_isFar;    // working memory of the motion limit
 } NodeState;
@@ -69,7 +69,7 @@ typedef struct ActingContact
     float m_distance;     // m, distance to keep from the contact's point: thickness plus target
     float m_speedLimit;   // m/s outwards when the contact pushed
     DRAPE_UINT m_stage;   // in which the plane was renewed
-    DRAPE_UINT m_pushed;  // whether it pushed in any stage
+    DRAPE_UINT m_pushed;  // true if it pushed in any stage
     DRAPE_UINT m_unused[3];
 } ActingContact;
 

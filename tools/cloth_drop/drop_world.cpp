@@ -63,7 +63,8 @@ DropWorld::DropWorld(std::unique_ptr<btCollisionConfiguration> configuration, st
 
 DropWorld::~DropWorld()
 {
-    if (m_cloth) m_world.removeSoftBody(m_cloth.get());
+    for (const std::unique_ptr<btSoftBody>& cloth : m_cloths)
+        m_world.removeSoftBody(cloth.get());
     if (m_softObstacle) m_world.removeSoftBody(m_softObstacle.get());
     if (m_object) m_world.removeCollisionObject(m_object.get());
 }
@@ -119,19 +120,20 @@ void DropWorld::addSoftObstacle(const DropScene& scene)
 
 void DropWorld::addCloth(const DropScene& scene, bool softPairs)
 {
-    m_cloth = makeBody(m_world.getWorldInfo(), scene.m_cloth.m_mesh, scene.m_mass, 0.5 * scene.m_thickness);
-    btSoftBody::Material* edges = m_cloth->m_materials[0];
+    m_cloths.push_back(makeBody(m_world.getWorldInfo(), scene.m_cloth.m_mesh, scene.m_mass, 0.5 * scene.m_thickness));
+    btSoftBody& cloth = *m_cloths.back();
+    btSoftBody::Material* edges = cloth.m_materials[0];
     edges->m_kLST = kEdgeStiffness;
-    btSoftBody::Material* bending = m_cloth->appendMaterial();
+    btSoftBody::Material* bending = cloth.appendMaterial();
     bending->m_kLST = kBendingStiffness;
-    addSprings(*m_cloth, scene.m_cloth.m_edgeSprings, edges);
-    addSprings(*m_cloth, scene.m_cloth.m_bendingSprings, bending);
-    m_cloth->m_cfg.piterations = kPositionIterations;
-    m_cloth->m_cfg.kDP = kDamping;
-    m_cloth->m_cfg.collisions =
+    addSprings(cloth, scene.m_cloth.m_edgeSprings, edges);
+    addSprings(cloth, scene.m_cloth.m_bendingSprings, bending);
+    cloth.m_cfg.piterations = kPositionIterations;
+    cloth.m_cfg.kDP = kDamping;
+    cloth.m_cfg.collisions =
         softPairs ? btSoftBody::fCollision::VF_SS : static_cast<int>(btSoftBody::fCollision::SDF_RS);
-    m_cloth->setVelocity(btVector3(0, static_cast<btScalar>(-scene.m_dropSpeed), 0));
-    m_world.addSoftBody(m_cloth.get());
+    cloth.setVelocity(btVector3(0, static_cast<btScalar>(-scene.m_dropSpeed), 0));
+    m_world.addSoftBody(&cloth);
 }
 
 double DropWorld::step(double dt)

@@ -41,11 +41,13 @@ public:
     // the end of the step.
     btRigidBody& addMovingObstacle(const DropScene& scene);
     void addSoftObstacle(const DropScene& scene);  // a soft body of massless nodes, for VF_SS
+    // May be called several times.
     void addCloth(const DropScene& scene, bool softPairs);
 
     TimedWorld& world() { return m_world; }
-    btSoftBody& cloth() { return *m_cloth; }
-    const btSoftBody& cloth() const { return *m_cloth; }
+    // The cloth that was added first, or another one.
+    btSoftBody& cloth(std::size_t index = 0) { return *m_cloths[index]; }
+    const btSoftBody& cloth(std::size_t index = 0) const { return *m_cloths[index]; }
 
     // Runs one step and returns its wall time in ms.
     double step(double dt);
@@ -65,6 +67,6 @@ private:
     std::unique_ptr<btBvhTriangleMeshShape> m_shape;
     std::unique_ptr<btCollisionObject> m_object;
     std::unique_ptr<btSoftBody> m_softObstacle;
-    std::unique_ptr<btSoftBody> m_cloth;
+    std::vector<std::unique_ptr<btSoftBody>> m_cloths;
 };
 }  // namespace drape

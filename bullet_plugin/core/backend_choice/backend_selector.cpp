@@ -17,8 +17,8 @@ namespace
 {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// Minimum nodes for solving cloths on a GPU.
-constexpr std::size_t kLeastDeviceNodes = 1024;
+// Minimum nodes, of all cloths that fit a work-group, for solving them on a GPU. One cloth takes it as long as many.
+constexpr std::size_t kLeastDeviceNodes = 16384;
 
 std::string rounded(double value)
 {

@@ -45,7 +45,7 @@ public:
     // Returns the open device, also while the host runs the steps and after its failure; null without one.
     Device* device();
 
-    // Returns the stage that solves cloths with so many nodes on the device; null if the host should.
+    // Returns the stage that solves cloths on the device; null if the host should. nodes: see Pipeline::solveStage().
     SolveStage* solveStage(std::size_t nodes);
 
     // Chooses the back end for the named pairs.

@@ -134,8 +134,8 @@ public:
     // Returns the threads set by Settings::m_threads; never null. The pipeline's caller may use them, too, between
     // its calls.
     const std::shared_ptr<ThreadTeam>& threads() const;
-    // Returns the stage that solves cloths with so many nodes on a device; null if the host should
-    // (Settings::m_solverPlace).
+    // Returns the stage that solves cloths on a device; null if the host should (Settings::m_solverPlace). nodes: the
+    // number in all cloths that fit a work-group.
     SolveStage* solveStage(std::size_t nodes);
     // Returns whether a device failed, so that the host runs every step from then on.
     bool deviceFailed() const;

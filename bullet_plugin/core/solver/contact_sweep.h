@@ -57,7 +57,7 @@ private:
         NodesAndFaces,
         LimitNodesAndFaces,  // NodesAndFaces after nodes are brought back to their paths
         Edges,
-        LimitSpeeds,  // of nodes and faces
+        LimitSpeeds,  // contacts of nodes and faces limit speeds
         LimitEdgeSpeeds
     };
 

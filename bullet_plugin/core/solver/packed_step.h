@@ -30,7 +30,7 @@ public:
     void unpack(const SolveWorkWord* words) const;
 
 private:
-    // What a cloth's links and faces were when they were packed.
+    // Revisions of a cloth's links and faces when they were packed.
     using TopologyKey = std::pair<std::uint64_t, std::uint64_t>;
     struct Entry
     {

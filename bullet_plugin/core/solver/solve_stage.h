@@ -15,16 +15,16 @@ struct SolveStep
 {
     SolveLayout m_layout = {};
     std::size_t m_clothCount = 0, m_nodeCount = 0;
-    std::size_t m_mostNodes = 0;  // of a cloth
+    std::size_t m_mostNodes = 0;  // nodes of the largest cloth
     const SolveInputWord* m_input = nullptr;
     std::size_t m_inputWords = 0;
-    // null: as in the last step
+    // Null: the topology of the last step.
     const SolveTopologyWord* m_topology = nullptr;
     std::size_t m_topologyWords = 0;
     const Contact* m_contacts = nullptr;
     std::size_t m_contactCount = 0;
-    std::size_t m_workWords = 0;  // of which the first m_resultWords are read back
-    std::size_t m_resultWords = 0;
+    std::size_t m_workWords = 0;
+    std::size_t m_resultWords = 0;  // words at the start of the working memory that are read back
 };
 
 class SolveStage

@@ -287,21 +287,31 @@ void StepSolver::solveOnHost(const std::vector<SolverCloth>& cloths, const std::
     close();
 }
 
-void StepSolver::solve(const std::vector<SolverCloth>& cloths, const std::vector<SolverCloth>& free,
-                       const ContactSource& source, SolveStage* stage)
+std::size_t StepSolver::solve(const std::vector<SolverCloth>& cloths, const std::vector<SolverCloth>& free,
+                              const ContactSource& source, SolveStage* stage)
 {
-    if (!stage) return solveOnHost(cloths, free, source);
-    m_onDevice = m_onHost = m_freeOnHost = {};
+    m_onDevice.clear();
+    m_onHost.clear();
+    m_freeOnHost.clear();
     for (const SolverCloth& cloth : cloths)
-        (PackedStep::fits(cloth, source) ? m_onDevice : m_onHost).push_back(cloth);
+        (stage && PackedStep::fits(cloth, source) ? m_onDevice : m_onHost).push_back(cloth);
     for (const SolverCloth& cloth : free)
-        (PackedStep::fits(cloth, source) ? m_onDevice : m_freeOnHost).push_back(cloth);
-    if (m_onDevice.empty()) return solveOnHost(cloths, free, source);
+        (stage && PackedStep::fits(cloth, source) ? m_onDevice : m_freeOnHost).push_back(cloth);
+    if (m_onDevice.empty())
+    {
+        solveOnHost(m_onHost, m_freeOnHost, source);
+        return 0;
+    }
     m_packed.pack(m_onDevice, source, *stage);
     stage->submit(m_packed.step());
     solveOnHost(m_onHost, m_freeOnHost, source);
-    if (const SolveWorkWord* const result = stage->finish()) return m_packed.unpack(result);
+    if (const SolveWorkWord* const result = stage->finish())
+    {
+        m_packed.unpack(result);
+        return m_onDevice.size();
+    }
     solveOnHost(m_onDevice, {}, source);
+    return 0;
 }
 
 void StepSolver::close(const std::vector<SolverCloth>& cloths, const ContactSource& source)

@@ -62,9 +62,9 @@ public:
 
     // Cloths with ForeignLinks are written back; nodes of others stay where the solver leaves them. free: cloths
     // without contacts, limits or rigid rows. stage: solves the cloths that fit (PackedStep); null if there is none.
-    // If the device fails, the host solves them all.
-    void solve(const std::vector<SolverCloth>& cloths, const std::vector<SolverCloth>& free,
-               const ContactSource& source, SolveStage* stage = nullptr);
+    // If the device fails, the host solves them all. Returns the number of cloths that the device solved.
+    std::size_t solve(const std::vector<SolverCloth>& cloths, const std::vector<SolverCloth>& free,
+                      const ContactSource& source, SolveStage* stage = nullptr);
     // Runs the closing sweeps alone, for cloths whose nodes are at the ends of the paths along which their contacts
     // were found.
     void close(const std::vector<SolverCloth>& cloths, const ContactSource& source);

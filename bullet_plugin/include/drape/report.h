@@ -184,6 +184,8 @@ struct StepStatistics : StepCounts, StepParts
     std::size_t m_retries = 0;
     // Cloths without work: asleep at the step's start, pinned, or without a time step.
     std::size_t m_clothsSkipped = 0;
+    // Cloths whose links and contacts an OpenCL device solved (Settings::m_solverPlace).
+    std::size_t m_clothsOnDevice = 0;
     // Obstacles of the step's pairs that were not built, refitted or moved.
     std::size_t m_obstaclesKept = 0;
     // True if there was nothing to do: no pair, or nothing that could touch.

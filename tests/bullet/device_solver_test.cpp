@@ -1,0 +1,141 @@
+// Cloth solved on an OpenCL device: the host's trajectories bit for bit, for one cloth and for many, beside obstacles
+// that rest or move, and the host's help where a device cannot solve.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "scenes/shapes.h"
+#include "tests/bullet/drop_world.h"
+#include "tests/support/backends.h"
+
+namespace drape::test
+{
+namespace
+{
+constexpr int kSteps = 60;
+
+struct Trajectory
+{
+    std::uint64_t m_hash = kHashStart;
+    std::size_t m_onDevice = 0;  // cloths that the device solved, over all steps
+};
+
+// A world to which a test adds cloths; beforeStep, if any, moves the obstacle.
+struct Scene
+{
+    std::function<void(DropWorld&, std::vector<btSoftBody*>&)> m_addCloths;
+    btVector3 m_shift = btVector3(0, 0, 0);  // m, of the obstacle in each step
+    btScalar m_turn = 0;                     // rad, about y
+    btScalar m_friction = btScalar(0.5);
+};
+
+Trajectory run(const Scene& scene, Settings settings, SolverPlace place)
+{
+    settings.m_solver = Solver::Drape;
+    settings.m_solverPlace = place;
+    Plugin plugin(settings);
+    MeshShape shape(makeSphere(0.4f, 3));
+    DropWorld world(&plugin);
+    btRigidBody& obstacle = world.addKinematic(shape.shape());
+    obstacle.setFriction(scene.m_friction);
+    std::vector<btSoftBody*> cloths;
+    scene.m_addCloths(world, cloths);
+    Trajectory trajectory;
+    btTransform pose = btTransform::getIdentity();
+    for (int step = 0; step < kSteps; ++step)
+    {
+        pose.setOrigin(pose.getOrigin() + scene.m_shift);
+        pose.setBasis(btMatrix3x3(btQuaternion(btVector3(0, 1, 0), scene.m_turn * btScalar(step + 1))));
+        obstacle.setWorldTransform(pose);
+        world.step();
+        trajectory.m_onDevice += plugin.statistics().m_clothsOnDevice;
+        for (const btSoftBody* cloth : cloths)
+            trajectory.m_hash = hashOf(*cloth, trajectory.m_hash);
+    }
+    return trajectory;
+}
+
+std::function<void(DropWorld&, std::vector<btSoftBody*>&)> clothsOf(int count, int nodes, btScalar speed)
+{
+    return [=](DropWorld& world, std::vector<btSoftBody*>& cloths)
+    {
+        for (int i = 0; i < count; ++i)
+        {
+            ClothSpec spec;
+            spec.m_nodes = nodes;
+            spec.m_centre = btVector3(0, btScalar(0.5) + btScalar(0.1) * btScalar(i), 0);
+            btSoftBody& cloth = world.addCloth(spec);
+            cloth.addVelocity(btVector3(0, -speed, 0));
+            cloths.push_back(&cloth);
+        }
+    };
+}
+
+class DeviceSolverTest : public BackendTest
+{
+protected:
+    // Runs the scene on the host and on the device. Returns the number of cloths that the device solved.
+    std::size_t expectSame(const Scene& scene) const
+    {
+        const Trajectory host = run(scene, hostSettings(), SolverPlace::Host);
+        const Trajectory device = run(scene, GetParam().m_settings, SolverPlace::Device);
+        EXPECT_EQ(host.m_onDevice, 0u);
+        EXPECT_EQ(host.m_hash, device.m_hash);
+        return device.m_onDevice;
+    }
+};
+
+TEST_P(DeviceSolverTest, AClothDropsAsOnTheHost)
+{
+    EXPECT_EQ(expectSame({clothsOf(1, 17, 0)}), std::size_t(kSteps));
+    EXPECT_EQ(expectSame({clothsOf(1, 17, 20)}), std::size_t(kSteps));
+}
+
+// Two leaves of a cloth, whose contacts need several levels of batches.
+TEST_P(DeviceSolverTest, ALargeClothDropsAsOnTheHost)
+{
+    EXPECT_EQ(expectSame({clothsOf(1, 52, 2)}), std::size_t(kSteps));
+}
+
+TEST_P(DeviceSolverTest, ManyClothsDropAsOnTheHost)
+{
+    EXPECT_EQ(expectSame({clothsOf(20, 9, 1)}), std::size_t(20 * kSteps));
+}
+
+TEST_P(DeviceSolverTest, AMovingObstacleCarriesClothAsOnTheHost)
+{
+    Scene scene = {clothsOf(2, 17, 1)};
+    scene.m_shift = btVector3(btScalar(0.01), btScalar(0.005), 0);
+    scene.m_turn = btScalar(0.05);
+    EXPECT_EQ(expectSame(scene), std::size_t(2 * kSteps));
+}
+
+TEST_P(DeviceSolverTest, APinnedFlagWithoutContactsMovesAsOnTheHost)
+{
+    const auto addFlag = [](DropWorld& world, std::vector<btSoftBody*>& cloths)
+    {
+        ClothSpec spec;
+        spec.m_centre = btVector3(5, 5, 0);
+        btSoftBody& flag = world.addCloth(spec);
+        flag.setMass(0, 0);
+        flag.setMass(16, 0);
+        cloths.push_back(&flag);
+    };
+    EXPECT_EQ(expectSame({addFlag}), std::size_t(kSteps));
+}
+
+// A cloth with more nodes than a work-group's local memory holds is solved on the host, beside one on the device.
+TEST_P(DeviceSolverTest, TheHostSolvesWhatDoesNotFitTheDevice)
+{
+    const auto addBoth = [](DropWorld& world, std::vector<btSoftBody*>& cloths)
+    {
+        clothsOf(1, 60, 0)(world, cloths);
+        clothsOf(1, 9, 0)(world, cloths);
+    };
+    EXPECT_EQ(expectSame({addBoth}), std::size_t(kSteps));
+}
+
+INSTANTIATE_TEST_SUITE_P(Devices, DeviceSolverTest, testing::ValuesIn(openClBackends()), backendName);
+}  // namespace
+}  // namespace drape::test
