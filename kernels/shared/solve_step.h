@@ -9,6 +9,12 @@
 
 DRAPE_NAMESPACE_BEGIN
 
+// Work-items of a cloth's work-group: on a GPU few for small cloths, so that a compute unit has several groups, and for
+// others as many as their registers allow. On a CPU one, without barriers.
+#define DRAPE_SOLVE_GROUP 512
+#define DRAPE_SOLVE_SMALL_GROUP 128
+#define DRAPE_SOLVE_CPU_GROUP 1
+
 // Words of the three arenas (shared/arenas.h) that hold the step's input, the topology and the working memory.
 typedef struct SolveInputWord
 {

@@ -781,59 +781,71 @@ DRAPE_RARE_FUNCTION int limitSpeeds(const Solve* solve, const SolveRange range)
     return near;
 }
 
-// A work-group solves the cloth of its number, whatever its size.
-#ifdef DRAPE_CPU
-#define DRAPE_SOLVE_GROUP 1
-#else
-#define DRAPE_SOLVE_GROUP 512
-#endif
-__kernel __attribute__((reqd_work_group_size(DRAPE_SOLVE_GROUP, 1, 1))) void solveCloths(DRAPE_SOLVE_CLOTHS)
+// Solves the cloth of the work-group's number, whatever the group's size.
+DRAPE_RARE_FUNCTION void solveCloth(const SolveLayout* layout, __global const SolveInputWord* input,
+                                    __global const SolveTopologyWord* topology, __global const Contact* contacts,
+                                    __global SolveWorkWord* work, __local SolverNode* nodes,
+                                    __local uint* pushingBatches, __local uint* shared)
 {
-    __local uint shared, pushingBatches[DRAPE_RECORDED_BATCHES];
     Solve solve;
-    __global const SolveCloth* cloth = (__global const SolveCloth*)(input + layout.m_cloths) + get_group_id(0);
+    __global const SolveCloth* cloth = (__global const SolveCloth*)(input + layout->m_cloths) + get_group_id(0);
     const uint firstNode = cloth->m_nodes.m_first;
     solve.m_cloth = cloth;
-    solve.m_paths = (__global const NodePath*)(input + layout.m_paths) + firstNode;
-    solve.m_accelerations = (__global const Vec3*)(input + layout.m_accelerations) + firstNode;
-    solve.m_batches = (__global const SolveBatch*)(input + layout.m_batches);
-    solve.m_features = (__global const SolveFeature*)(input + layout.m_features);
-    solve.m_surfaceOf = (__global const uint*)(input + layout.m_surfaceOf);
-    solve.m_surfaces = (__global const SolveSurface*)(input + layout.m_surfaces);
-    solve.m_regions = (__global const SolveRegion*)(input + layout.m_regions);
-    solve.m_links = (__global const SolveLink*)(topology + layout.m_links);
-    solve.m_faceLists = (__global const uint*)(topology + layout.m_faceLists) + cloth->m_faceLists;
-    solve.m_facesOfNode = (__global const uint*)(topology + layout.m_facesOfNode);
-    solve.m_faces = (__global const int*)(topology + layout.m_faces);
+    solve.m_paths = (__global const NodePath*)(input + layout->m_paths) + firstNode;
+    solve.m_accelerations = (__global const Vec3*)(input + layout->m_accelerations) + firstNode;
+    solve.m_batches = (__global const SolveBatch*)(input + layout->m_batches);
+    solve.m_features = (__global const SolveFeature*)(input + layout->m_features);
+    solve.m_surfaceOf = (__global const uint*)(input + layout->m_surfaceOf);
+    solve.m_surfaces = (__global const SolveSurface*)(input + layout->m_surfaces);
+    solve.m_regions = (__global const SolveRegion*)(input + layout->m_regions);
+    solve.m_links = (__global const SolveLink*)(topology + layout->m_links);
+    solve.m_faceLists = (__global const uint*)(topology + layout->m_faceLists) + cloth->m_faceLists;
+    solve.m_facesOfNode = (__global const uint*)(topology + layout->m_facesOfNode);
+    solve.m_faces = (__global const int*)(topology + layout->m_faces);
     solve.m_contacts = contacts;
     solve.m_nodes = nodes;
     solve.m_pushingBatches = pushingBatches;
     forAll(i, DRAPE_RECORDED_BATCHES) pushingBatches[i] = 0;
-    solve.m_states = (__global NodeState*)(work + layout.m_states) + firstNode;
-    solve.m_planes = (__global SolvePlane*)(work + layout.m_planes);
-    solve.m_acting = (__global ActingContact*)(work + layout.m_acting);
-    solve.m_allowances = (__global SolveAllowance*)(work + layout.m_allowances) + firstNode;
-    solve.m_spans = (__global SolveSpan*)(work + layout.m_spans);
-    solve.m_featureStates = (__global SolveFeatureState*)(work + layout.m_featureStates);
-    solve.m_lists = (__global uint*)(work + layout.m_lists);
+    solve.m_states = (__global NodeState*)(work + layout->m_states) + firstNode;
+    solve.m_planes = (__global SolvePlane*)(work + layout->m_planes);
+    solve.m_acting = (__global ActingContact*)(work + layout->m_acting);
+    solve.m_allowances = (__global SolveAllowance*)(work + layout->m_allowances) + firstNode;
+    solve.m_spans = (__global SolveSpan*)(work + layout->m_spans);
+    solve.m_featureStates = (__global SolveFeatureState*)(work + layout->m_featureStates);
+    solve.m_lists = (__global uint*)(work + layout->m_lists);
 
     beginStep(&solve);
     for (uint i = 0; i < cloth->m_substeps; ++i)
-        runSubstep(&solve, i, &shared);
+        runSubstep(&solve, i, shared);
     forAll(i, cloth->m_nodes.m_count) nodeRemember(solve.m_nodes + i, solve.m_states + i);
     syncNodes();
-    applyLimits(&solve, &shared);
-    const uint sweeps = cloth->m_features.m_count > 0 ? closeContacts(&solve, &shared) : 0;
+    applyLimits(&solve, shared);
+    const uint sweeps = cloth->m_features.m_count > 0 ? closeContacts(&solve, shared) : 0;
     syncAll();
     forAll(i, cloth->m_nodes.m_count) nodeAddShift(solve.m_nodes + i, solve.m_states + i, cloth->m_perShift);
     syncAll();
-    __global SolverNode* ends = (__global SolverNode*)(work + layout.m_nodes) + firstNode;
+    __global SolverNode* ends = (__global SolverNode*)(work + layout->m_nodes) + firstNode;
     forAll(i, cloth->m_nodes.m_count) ends[i] = nodes[i];
     int near = limitSpeeds(&solve, cloth->m_faceBatches);
     near |= limitSpeeds(&solve, cloth->m_edgeBatches);
-    near = anyInGroup(near, &shared);
+    near = anyInGroup(near, shared);
     if (get_local_id(0) > 0) return;
-    __global SolveResult* result = (__global SolveResult*)(work + layout.m_results) + get_group_id(0);
+    __global SolveResult* result = (__global SolveResult*)(work + layout->m_results) + get_group_id(0);
     result->m_mayHavePassed = near;
     result->m_closingSweeps = sweeps;
 }
+
+// One text for both sizes of groups.
+#ifdef DRAPE_CPU
+#define DRAPE_GROUP_SIZE(gpu) DRAPE_SOLVE_CPU_GROUP
+#else
+#define DRAPE_GROUP_SIZE(gpu) gpu
+#endif
+#define DRAPE_SOLVE(name, group)                                                                                \
+    __kernel __attribute__((reqd_work_group_size(DRAPE_GROUP_SIZE(group), 1, 1))) void name(DRAPE_SOLVE_CLOTHS) \
+    {                                                                                                           \
+        __local uint shared, pushingBatches[DRAPE_RECORDED_BATCHES];                                            \
+        solveCloth(&layout, input, topology, contacts, work, nodes, pushingBatches, &shared);                   \
+    }
+DRAPE_SOLVE(solveCloths, DRAPE_SOLVE_GROUP)
+DRAPE_SOLVE(solveSmallCloths, DRAPE_SOLVE_SMALL_GROUP)

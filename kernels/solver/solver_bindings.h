@@ -1,4 +1,4 @@
-// Arguments of the kernel that solves cloths (shared/bindings.h). input, work, topology: see SolveLayout. contacts: of
+// Arguments of the kernels that solve cloths (shared/bindings.h). input, work, topology: see SolveLayout. contacts: of
 // the step, in canonical order. nodes: of the work-group's cloth.
 #ifndef DRAPE_SOLVER_BINDINGS_H
 #define DRAPE_SOLVER_BINDINGS_H
@@ -15,6 +15,7 @@
 namespace drape::kernels
 {
 DRAPE_BIND(solveCloths, DRAPE_SOLVE_CLOTHS)
+DRAPE_BIND(solveSmallCloths, DRAPE_SOLVE_CLOTHS)
 }  // namespace drape::kernels
 #endif
 

@@ -133,7 +133,9 @@ void DropWorld::addCloth(const DropScene& scene, bool softPairs)
     cloth.m_cfg.collisions =
         softPairs ? btSoftBody::fCollision::VF_SS : static_cast<int>(btSoftBody::fCollision::SDF_RS);
     cloth.setVelocity(btVector3(0, static_cast<btScalar>(-scene.m_dropSpeed), 0));
-    m_world.addSoftBody(&cloth);
+    // Cloths meet obstacles alone, unless the obstacle is a soft body.
+    const int group = btBroadphaseProxy::DefaultFilter, all = btBroadphaseProxy::AllFilter;
+    m_world.addSoftBody(&cloth, group, softPairs ? all : all ^ group);
 }
 
 double DropWorld::step(double dt)

@@ -4,13 +4,14 @@ namespace drape
 {
 namespace
 {
-// Work-items of a cloth: on a GPU as many as its registers allow; on a CPU one, without barriers.
-constexpr std::size_t kGroupGpu = 512, kGroupCpu = 1;
+// Maximum nodes of a cloth for the small group.
+constexpr std::size_t kMostSmallNodes = 512;
 }  // namespace
 
 void SolveStage::create(Device& device, const ProgramLoader& load)
 {
     m_solve.create(device, load("solver/solve_cloths"));
+    m_solveSmall.create(device, load("solver/solve_cloths"));
     m_device = &device;
 }
 
@@ -18,6 +19,14 @@ SolveInputWord* SolveStage::input(std::size_t words)
 {
     if (m_inputWritten->capacity() < words) m_inputWritten->reserve(m_device, words + words / 4);
     return m_inputWritten->data();
+}
+
+template <class Kernel>
+void SolveStage::launch(Kernel& kernel, std::size_t gpuGroup, const SolveStep& step)
+{
+    const std::size_t group = m_device->isGpu() ? gpuGroup : DRAPE_SOLVE_CPU_GROUP;
+    kernel.launch(*m_device, step.m_clothCount * group, group, step.m_layout, m_input, m_topology, m_contacts, m_work,
+                  step.m_mostNodes);
 }
 
 void SolveStage::submit(const SolveStep& step)
@@ -35,9 +44,10 @@ void SolveStage::submit(const SolveStep& step)
     m_work.reserve(device, step.m_workWords);
     if (m_resultRead->capacity() < step.m_resultWords)
         m_resultRead->reserve(m_device, step.m_resultWords + step.m_resultWords / 4);
-    const std::size_t group = device.isGpu() ? kGroupGpu : kGroupCpu;
-    m_solve.launch(device, step.m_clothCount * group, group, step.m_layout, m_input, m_topology, m_contacts, m_work,
-                   step.m_mostNodes);
+    if (step.m_mostNodes <= kMostSmallNodes)
+        launch(m_solveSmall, DRAPE_SOLVE_SMALL_GROUP, step);
+    else
+        launch(m_solve, DRAPE_SOLVE_GROUP, step);
     m_work.read(device, m_resultRead->data(), step.m_resultWords);
     device.flush();
 }

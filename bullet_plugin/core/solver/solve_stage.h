@@ -51,7 +51,11 @@ public:
 private:
     Device* m_device = nullptr;
     std::uint64_t m_revision = newRevision();
+    template <class Kernel>
+    void launch(Kernel& kernel, std::size_t gpuGroup, const SolveStep& step);
+
     BoundKernel<kernels::solveCloths> m_solve;
+    BoundKernel<kernels::solveSmallCloths> m_solveSmall;
     Buffer<SolveInputWord> m_input{"solver input"};
     Buffer<SolveTopologyWord> m_topology{"solver topology"};
     Buffer<Contact> m_contacts{"solver contacts"};
