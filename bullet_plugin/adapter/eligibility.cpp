@@ -59,11 +59,17 @@ const char* reasonForStock(const PluginState& state, const btSoftBody& cloth, co
     return reasonFromObstacle(obstacle, shape);
 }
 
-const char* reasonForBulletsLinks(const PluginState& state, const btSoftBody& body)
+const char* reasonFromSettings(const PluginState& state, const btSoftBody& body)
 {
     if (!state.ready()) return "Drape could not start; see Plugin::error()";
     if (state.settings().m_solver == Solver::Bullet) return "Settings::m_solver leaves links to Bullet";
     if (!state.steps(body)) return "the world's soft body solver is not a drape::SoftBodySolver of this plugin";
+    return SubstepBody::reasonFromSettings(body);
+}
+
+const char* reasonForBulletsLinks(const PluginState& state, const btSoftBody& body)
+{
+    if (const char* reason = reasonFromSettings(state, body)) return reason;
     return SubstepBody::reasonForBullet(body);
 }
 

@@ -35,4 +35,6 @@ bool respond(const btSoftBody& cloth, const btCollisionObject& obstacle);
 
 // Returns why Bullet solves the body's links, null if Drape does. Contacts that Bullet finds in a step come on top.
 const char* reasonForBulletsLinks(const PluginState& state, const btSoftBody& body);
+// Returns the same without a look at the links.
+const char* reasonFromSettings(const PluginState& state, const btSoftBody& body);
 }  // namespace drape

@@ -66,7 +66,10 @@ void holdStill(btSoftBody& body, const BodyContacts* contacts)
 // Working data kept from step to step.
 struct SoftBodySolver::Work
 {
-    explicit Work(PluginState& state) : m_solver(new StepSolver(state.threads())), m_failures(state.failures()) {}
+    explicit Work(PluginState& state)
+        : m_threads(state.threads()), m_solver(new StepSolver(m_threads)), m_failures(state.failures())
+    {
+    }
 
     bool isPredicted(const btSoftBody& body) const
     {
@@ -112,6 +115,7 @@ struct SoftBodySolver::Work
         state.pipeline().giveBackRoom();
     }
 
+    ThreadTeam& m_threads;
     std::unique_ptr<CollisionStep> m_step;  // null until it is needed
     std::unique_ptr<StepSolver> m_solver;
     UsageWatch m_usage;
@@ -211,7 +215,7 @@ void SoftBodySolver::recordVelocities()
         const btSoftBody& body = *m_softBodySet[i];
         auto at = all.find(&body);
         // Sleeping bodies are not examined: a world at rest may have thousands.
-        const bool isSolved = body.isActive() ? !reasonForBulletsLinks(*m_state, body) : at != all.end();
+        const bool isSolved = body.isActive() ? !reasonFromSettings(*m_state, body) : at != all.end();
         if (isSolved && at == all.end()) at = all.emplace(&body, std::make_unique<SubstepBody>()).first;
         if (isSolved)
         {
@@ -244,7 +248,7 @@ void SoftBodySolver::leaveToBullet()
     {
         btSoftBody& body = *m_softBodySet[i];
         SubstepBody* const substeps = m_work->substepsOf(body);
-        if (substeps && (!substeps->fits(body) || SubstepBody::reasonForBulletNow(body))) substeps->leave(body);
+        if (substeps && !substeps->canSolveNow(body, &m_state->threads())) substeps->leave(body);
     }
 }
 
@@ -319,7 +323,7 @@ bool SoftBodySolver::Work::take(btSoftBody& body)
     if (!contacts && !substeps) return false;
     if (substeps)
     {
-        substeps->begin(body, contacts ? &contacts->nodes() : nullptr, m_rigidBodies);
+        substeps->begin(body, contacts ? &contacts->nodes() : nullptr, m_rigidBodies, &m_threads);
         ClothContacts& cloth = contacts ? contacts->m_contacts : substeps->alone();
         m_ends.emplace_back(&body, &cloth.m_nodes);
         if (contacts || substeps->rigidRows())

@@ -1,6 +1,7 @@
 #include "bullet_plugin/adapter/substep_body.h"
 
 #include <algorithm>
+#include <atomic>
 
 #include "bullet_plugin/adapter/body_nodes.h"
 #include "bullet_plugin/core/solver/cloth_parts.h"
@@ -10,12 +11,28 @@ namespace drape
 {
 namespace
 {
-// Minimum nodes for sharing a pass over them, and the nodes of a range.
+// Minimum nodes or links for sharing a pass over them, and those of a range.
 constexpr std::size_t kLeastShared = 8192, kRange = 2048;
 
 std::size_t nodeCount(const btSoftBody& body)
 {
     return static_cast<std::size_t>(body.m_nodes.size());
+}
+
+// Returns the index of a node; -1 for one of another body.
+std::ptrdiff_t nodeAt(const btSoftBody& body, const btSoftBody::Node* node)
+{
+    const btSoftBody::Node* const first = body.m_nodes.size() > 0 ? &body.m_nodes[0] : nullptr;
+    return node >= first && node < first + body.m_nodes.size() ? node - first : -1;
+}
+
+// Calls work(first, last) for ranges of `count` elements. threads: null for the caller alone.
+template <class Work>
+void forRanges(std::size_t count, ThreadTeam* threads, const Work& work)
+{
+    if (!threads || count < kLeastShared) return work(std::size_t(0), count);
+    threads->run((count + kRange - 1) / kRange,
+                 [&](std::size_t range) { work(range * kRange, std::min(count, (range + 1) * kRange)); });
 }
 
 // Returns how far the end of a free path in substeps lies from Bullet's prediction, per unit of acceleration, s².
@@ -26,17 +43,7 @@ btScalar shiftOf(const btSoftBody& body)
 }
 }  // namespace
 
-bool SubstepBody::joinsOtherBodies(const btSoftBody& body)
-{
-    const btSoftBody::Node* const first = body.m_nodes.size() > 0 ? &body.m_nodes[0] : nullptr;
-    const auto isOwn = [&](const btSoftBody::Node* node)
-    { return node >= first && node < first + body.m_nodes.size(); };
-    for (int i = 0; i < body.m_links.size(); ++i)
-        if (!isOwn(body.m_links[i].m_n[0]) || !isOwn(body.m_links[i].m_n[1])) return true;
-    return false;
-}
-
-const char* SubstepBody::reasonForBullet(const btSoftBody& body)
+const char* SubstepBody::reasonFromSettings(const btSoftBody& body)
 {
     const btSoftBody::Config& config = body.m_cfg;
     if (sizeof(btScalar) != sizeof(float)) return "Bullet computes in double precision";
@@ -49,15 +56,24 @@ const char* SubstepBody::reasonForBullet(const btSoftBody& body)
     const btSoftBody::tPSolverArray& sequence = config.m_psequence;
     if (sequence.findLinearSearch(btSoftBody::ePSolver::Linear) == sequence.size())
         return "the soft body's solver sequence has no links (m_psequence)";
-    if (joinsOtherBodies(body)) return "links join the soft body to another one";
     return nullptr;
 }
 
-const char* SubstepBody::reasonForBulletNow(const btSoftBody& body)
+const char* SubstepBody::reasonForBullet(const btSoftBody& body)
 {
-    if (const char* reason = reasonForBullet(body)) return reason;
-    if (body.m_scontacts.size() > 0) return "the soft body touches a soft body, or itself, by Bullet's own algorithm";
-    return RigidBodies::reasonForBullet(body);
+    if (const char* reason = reasonFromSettings(body)) return reason;
+    for (int i = 0; i < body.m_links.size(); ++i)
+        if (nodeAt(body, body.m_links[i].m_n[0]) < 0 || nodeAt(body, body.m_links[i].m_n[1]) < 0)
+            return "links join the soft body to another one";
+    return nullptr;
+}
+
+bool SubstepBody::canSolveNow(const btSoftBody& body, ThreadTeam* threads)
+{
+    if (!fits(body) || reasonFromSettings(body)) return false;
+    // Bullet's own algorithms found that it touches a soft body, or itself.
+    if (body.m_scontacts.size() > 0 || RigidBodies::reasonForBullet(body)) return false;
+    return readTopology(body, threads);
 }
 
 int SubstepBody::substepsOf(const btSoftBody& body)
@@ -122,53 +138,73 @@ void SubstepBody::buildLinks(const btSoftBody& body)
     m_isSorted = true;
 }
 
-// Reads which nodes the links join; sorts them again if that changed.
-void SubstepBody::readTopology(const btSoftBody& body)
+// Reads which nodes the links join; sorts them again if that changed. Returns false if one is another body's.
+bool SubstepBody::readTopology(const btSoftBody& body, ThreadTeam* threads)
 {
     const std::size_t count = static_cast<std::size_t>(body.m_links.size());
-    bool isNew = !m_isSorted || m_links.size() != count || m_parts.nodeCount() != nodeCount(body);
+    std::atomic<bool> isNew{!m_isSorted || m_links.size() != count || m_parts.nodeCount() != nodeCount(body)};
+    std::atomic<bool> joinsOthers{false};
     m_links.resize(count);
-    const btSoftBody::Node* const first = count > 0 ? &body.m_nodes[0] : nullptr;
-    for (std::size_t i = 0; i < count; ++i)
+    const auto read = [&](std::size_t first, std::size_t last)
     {
-        const btSoftBody::Link& link = body.m_links[static_cast<int>(i)];
-        for (int k = 0; k < 2; ++k)
+        bool changed = false, foreign = false;
+        for (std::size_t i = first; i < last; ++i)
         {
-            const std::uint32_t node = static_cast<std::uint32_t>(link.m_n[k] - first);
-            isNew = isNew || m_links[i].m_nodes[k] != node;
-            m_links[i].m_nodes[k] = node;
+            for (int k = 0; k < 2; ++k)
+            {
+                const std::ptrdiff_t at = nodeAt(body, body.m_links[static_cast<int>(i)].m_n[k]);
+                const std::uint32_t node = static_cast<std::uint32_t>(at);
+                foreign = foreign || at < 0;
+                changed = changed || m_links[i].m_nodes[k] != node;
+                m_links[i].m_nodes[k] = node;
+            }
         }
-    }
+        if (changed) isNew = true;
+        if (foreign) joinsOthers = true;
+    };
+    forRanges(count, threads, read);
     m_isSorted = !isNew;
+    if (joinsOthers) return false;
     if (isNew) buildLinks(body);
+    return true;
 }
 
 // Reads lengths and strengths of the links, whose nodes have their starts.
-void SubstepBody::readLinks(const btSoftBody& body)
+void SubstepBody::readLinks(const btSoftBody& body, ThreadTeam* threads)
 {
-    // Neighbouring links mostly have one material.
-    btScalar stiffness = -1;
-    double factor = 0;
-    for (std::size_t i = 0; i < m_links.size(); ++i)
+    std::atomic<bool> isNew{false};
+    const auto read = [&](std::size_t first, std::size_t last)
     {
-        const btSoftBody::Link& link = body.m_links[static_cast<int>(i)];
-        if (link.m_material->m_kLST != stiffness)
+        // Neighbouring links mostly have one material.
+        btScalar stiffness = -1;
+        double factor = 0;
+        bool changed = false;
+        for (std::size_t i = first; i < last; ++i)
         {
-            stiffness = link.m_material->m_kLST;
-            const double share = visitShare(stiffness, body.m_cfg.piterations, substepsOf(body), Substeps::kLinkSweeps);
-            factor = stiffness > 0 ? share / double(stiffness) : 0;
+            const btSoftBody::Link& link = body.m_links[static_cast<int>(i)];
+            if (link.m_material->m_kLST != stiffness)
+            {
+                stiffness = link.m_material->m_kLST;
+                const double share =
+                    visitShare(stiffness, body.m_cfg.piterations, substepsOf(body), Substeps::kLinkSweeps);
+                factor = stiffness > 0 ? share / double(stiffness) : 0;
+            }
+            // Bullet's m_c0 is the sum of the inverse masses divided by the stiffness.
+            const bool acts = link.m_c0 > 0;
+            const float strength = acts ? static_cast<float>(factor / double(link.m_c0)) : 0.0f;
+            const Vec3 apart = vec3Of(link.m_n[1]->m_q - link.m_n[0]->m_q);
+            const bool isSet = m_substeps.links().set(i, apart, static_cast<float>(link.m_c1), strength);
+            changed = changed || isSet;
         }
-        // Bullet's m_c0 is the sum of the inverse masses divided by the stiffness.
-        const bool acts = link.m_c0 > 0;
-        m_substeps.links().set(i, vec3Of(link.m_n[1]->m_q - link.m_n[0]->m_q), static_cast<float>(link.m_c1),
-                               acts ? static_cast<float>(factor / double(link.m_c0)) : 0.0f);
-    }
+        if (changed) isNew = true;
+    };
+    forRanges(m_links.size(), threads, read);
+    if (isNew) m_substeps.links().changed();
 }
 
-void SubstepBody::begin(const btSoftBody& body, SolverNodes* recorded, RigidBodies& bodies)
+void SubstepBody::begin(const btSoftBody& body, SolverNodes* recorded, RigidBodies& bodies, ThreadTeam* threads)
 {
-    readTopology(body);
-    readLinks(body);
+    readLinks(body, threads);
     SolverNodes& nodes = recorded ? *recorded : m_alone.m_nodes;
     if (!recorded)
     {
@@ -192,18 +228,15 @@ void SubstepBody::begin(const btSoftBody& body, SolverNodes* recorded, RigidBodi
 
 void SubstepBody::end(const SolverNodes& nodes, btSoftBody& body, ThreadTeam* threads)
 {
-    const auto write = [&](std::size_t range)
+    const auto write = [&](std::size_t first, std::size_t last)
     {
-        for (std::size_t i = range * kRange; i < std::min(nodes.count(), (range + 1) * kRange); ++i)
+        for (std::size_t i = first; i < last; ++i)
         {
             btSoftBody::Node& node = body.m_nodes[static_cast<int>(i)];
             writeNode(nodes, i, node);
             node.m_f.setZero();
         }
     };
-    const std::size_t ranges = (nodes.count() + kRange - 1) / kRange;
-    if (threads && nodes.count() >= kLeastShared) return threads->run(ranges, write);
-    for (std::size_t range = 0; range < ranges; ++range)
-        write(range);
+    forRanges(nodes.count(), threads, write);
 }
 }  // namespace drape

@@ -22,8 +22,11 @@ class SubstepBody
 public:
     // Returns why Bullet's own solver must solve the body; null if this class can.
     static const char* reasonForBullet(const btSoftBody& body);
-    // Returns why Bullet must solve the step that has been predicted: contacts of its own algorithms count, too.
-    static const char* reasonForBulletNow(const btSoftBody& body);
+    // Returns the same without a look at the links.
+    static const char* reasonFromSettings(const btSoftBody& body);
+    // Returns whether this class can solve the step that has been predicted. Contacts of Bullet's own algorithms count,
+    // too. Reads which nodes the links join. threads: null for the caller alone.
+    bool canSolveNow(const btSoftBody& body, ThreadTeam* threads);
 
     // Records the velocities before the body's predictMotion(). Does nothing for a body that sleeps.
     void beforePrediction(const btSoftBody& body);
@@ -40,9 +43,9 @@ public:
     // Returns the number of substeps: piterations, but at least kLeastSubsteps.
     static int substepsOf(const btSoftBody& body);
 
-    // Prepares the solver's step. recorded: nodes with the paths that were recorded; null: those of alone(), which are
-    // recorded now. bodies: gets the rigid bodies that the body touches or hangs on.
-    void begin(const btSoftBody& body, SolverNodes* recorded, RigidBodies& bodies);
+    // Prepares the solver's step, after canSolveNow(). recorded: nodes with the paths that were recorded; null: those
+    // of alone(), which are recorded now. bodies: gets the rigid bodies that the body touches or hangs on.
+    void begin(const btSoftBody& body, SolverNodes* recorded, RigidBodies& bodies, ThreadTeam* threads);
     // The cloth of a body without pairs.
     ClothContacts& alone() { return m_alone; }
     Substeps& substeps() { return m_substeps; }
@@ -60,9 +63,8 @@ private:
         btVector3 m_end, m_way;
     };
 
-    static bool joinsOtherBodies(const btSoftBody& body);
-    void readTopology(const btSoftBody& body);
-    void readLinks(const btSoftBody& body);
+    bool readTopology(const btSoftBody& body, ThreadTeam* threads);
+    void readLinks(const btSoftBody& body, ThreadTeam* threads);
     void buildLinks(const btSoftBody& body);
 
     bool m_isPredicted = false;

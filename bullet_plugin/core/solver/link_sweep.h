@@ -36,19 +36,22 @@ public:
     // Sets a link, in the order of build(), for the sweeps of a step. apart: m, from the first node to the second at
     // the step's start. restSquared: m². strength: kg, the share of a violation that a visit corrects, divided by the
     // sum of the nodes' inverse masses; 0 for a link without effect.
-    void set(std::size_t link, Vec3 apart, float restSquared, float strength)
+    // Returns whether length or strength changed; call changed() then. Several threads may set links.
+    bool set(std::size_t link, Vec3 apart, float restSquared, float strength)
     {
         Block& block = m_blocks[m_laneOf[link] / kWidth];
         const std::size_t lane = m_laneOf[link] % kWidth;
-        m_isNew = m_isNew || block.m_restSquared[lane] != restSquared || block.m_strength[lane] != strength;
+        const bool isNew = block.m_restSquared[lane] != restSquared || block.m_strength[lane] != strength;
         block.m_apart[0][lane] = apart.x;
         block.m_apart[1][lane] = apart.y;
         block.m_apart[2][lane] = apart.z;
         block.m_restSquared[lane] = restSquared;
         block.m_strength[lane] = strength;
+        return isNew;
     }
+    void changed() { m_isNew = true; }
 
-    // Differs after build(), and after a set() that changes a length or a strength, from that of any other state.
+    // Differs after build() and changed() from that of any other state.
     std::uint64_t revision()
     {
         if (m_isNew) m_revision = newRevision();
