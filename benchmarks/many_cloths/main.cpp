@@ -29,7 +29,7 @@ struct ManyOptions : CommonOptions
     unsigned m_threads = 0;
 };
 
-// How a run solves.
+// Settings of a run.
 struct Method
 {
     const char* m_name;

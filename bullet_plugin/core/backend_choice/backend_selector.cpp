@@ -17,8 +17,9 @@ namespace
 {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// Minimum nodes, of all cloths that fit a work-group, for solving them on a GPU. One cloth takes it as long as many.
-constexpr std::size_t kLeastDeviceNodes = 16384;
+// Minimum nodes for each thread of the host, in all cloths that fit a work-group, for solving them on a GPU. One cloth
+// takes it as long as many.
+constexpr std::size_t kLeastDeviceNodes = 8192;
 
 std::string rounded(double value)
 {
@@ -91,7 +92,7 @@ Device* BackendSelector::device()
 SolveStage* BackendSelector::solveStage(std::size_t nodes)
 {
     if (!m_device || m_device->device().failed() || !m_device->solveStage().created()) return nullptr;
-    const bool pays = nodes >= kLeastDeviceNodes || m_settings.m_solverPlace == SolverPlace::Device;
+    const bool pays = nodes >= kLeastDeviceNodes * m_threads->size() || m_settings.m_solverPlace == SolverPlace::Device;
     return pays ? &m_device->solveStage() : nullptr;
 }
 
