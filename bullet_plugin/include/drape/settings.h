@@ -37,7 +37,7 @@ enum class ContactMode : std::uint32_t
 // Selects who moves cloth under its links and forces.
 enum class Solver
 {
-    Auto,   // Drape
+    Auto,   // means Drape
     Drape,  // Drape for each soft body that it can solve (Plugin::whyBulletSolves()), Bullet for the others
     Bullet  // Bullet, with Drape's contacts between its iterations
 };

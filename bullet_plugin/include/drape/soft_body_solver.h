@@ -2,7 +2,7 @@
 //
 // Pass it to btSoftRigidDynamicsWorld's constructor. solveConstraints() finds the contacts of the pairs noted during
 // dispatch and waits for the device once, or again if fast paths are cut short. Bullet then iterates, with contact
-// sweeps before each iteration and closing sweeps after the last. With Solver::Drape, substeps of Drape's take the
+// sweeps before each iteration and closing sweeps after the last. Without Solver::Bullet, substeps of Drape's take the
 // place of Bullet's iterations. A body with contacts gets at least two iterations, unless its piterations is 0. Bodies
 // without a time step stay unchanged, and bodies of another solver are left to Bullet. A kinematic mesh that comes near
 // a sleeping body wakes it.
