@@ -62,11 +62,11 @@ struct BodyContacts
     float perSecond() const { return m_contacts.m_perSecond * m_contacts.m_kept; }
 
     // Resets the record for a body of another step. Memory is kept.
-    void start(MeshId cloth, btSoftBody* body, const ClothParts& parts)
+    void start(MeshId cloth, btSoftBody* body, const ClothParts& parts, const FeatureOrder& order)
     {
         m_cloth = cloth;
         m_body = body;
-        m_contacts.start(parts);
+        m_contacts.start(cloth, parts, &order);
         m_contacts.m_friction = float(body->m_cfg.kDF);
         m_contacts.m_hardness = float(body->m_cfg.kKHR);
         m_contacts.m_perSecond = float(body->m_sst.isdt);

@@ -67,7 +67,7 @@ void CollisionStep::addBody(ClothMirror& cloth, btSoftBody* body)
     m_spare.pop_back();
     m_byCloth[cloth.id()] = m_byBody[body] = m_bodies.size() - 1;
     m_uploads.push_back(Upload{cloth.id(), m_bodies.size() - 1, nullptr});
-    m_bodies.back().start(cloth.id(), body, cloth.parts());
+    m_bodies.back().start(cloth.id(), body, cloth.parts(), cloth.order());
 }
 
 void CollisionStep::clear()
@@ -140,6 +140,7 @@ void CollisionStep::addPair(const PairNote& note)
     const float thickness = float(note.m_thickness);
     contacts.m_limit.addObstacle(vec3Of(low), vec3Of(high), thickness, m_state.settings().m_activation,
                                  {m_state.m_found.source().mapOf(obstacleId), m_pairs.back().m_carriedStarts});
+    contacts.m_obstacles.push_back({obstacleId, thickness});
     contacts.m_leastThickness = std::min(contacts.m_leastThickness, thickness);
     contacts.m_mostThickness = std::max(contacts.m_mostThickness, thickness);
 }
@@ -243,10 +244,11 @@ void CollisionStep::receive(const ContactList& contacts)
             ++i;
         if (!body || body->m_leftOut) continue;
         const std::uint32_t count = static_cast<std::uint32_t>(i - begin);
+        const OrderedFeature& ordered = body->m_contacts.m_order->features()[cloth.m_index];
         if (body->m_tangled.empty())
-            addContacts(*body, &first, count, cloth);
+            addContacts(*body, &first, count, ordered);
         else
-            addHeldContacts(*body, &first, count, cloth);
+            addHeldContacts(*body, &first, count, ordered);
     }
     for (BodyContacts& pushed : m_bodies)
         addPushes(pushed);
@@ -254,13 +256,13 @@ void CollisionStep::receive(const ContactList& contacts)
 
 // Contacts of one feature of the cloth.
 void CollisionStep::addContacts(BodyContacts& body, const Contact* first, std::uint32_t count,
-                                const ClothFeature& cloth)
+                                const OrderedFeature& ordered)
 {
-    FeatureContacts feature{first, count, {cloth.m_nodes[0], cloth.m_nodes[1], cloth.m_nodes[2]}, 1};
+    FeatureContacts feature{first, count, &ordered, 1};
     for (std::uint32_t i = 0; i < count; ++i)
         feature.m_leastTime = std::min(feature.m_leastTime, first[i].m_time);
-    for (int k = 0; k < 3 && feature.m_nodes[k] >= 0; ++k)
-        body.m_contacts.m_limit.addContactNode(feature.m_nodes[k]);
+    for (int k = 0; k < 3 && ordered.m_nodes[k] >= 0; ++k)
+        body.m_contacts.m_limit.addContactNode(ordered.m_nodes[k]);
     body.m_contacts.m_features.push_back(feature);
 }
 

@@ -99,20 +99,21 @@ void CollisionStep::preparePushes(BodyContacts& body)
 
 // Adds contacts of one feature, without those that would keep it on the wrong side of their obstacle.
 void CollisionStep::addHeldContacts(BodyContacts& body, const Contact* first, std::uint32_t count,
-                                    const ClothFeature& cloth)
+                                    const OrderedFeature& ordered)
 {
     const auto isHeld = [&](const Contact& contact)
     {
         const MeshId obstacle = m_state.pipeline().view(contact).m_obstacle;
         return std::all_of(body.m_tangled.begin(), body.m_tangled.end(),
                            [&](const TangledPair& tangled)
-                           { return tangled.m_obstacle != obstacle || tangled.holds(cloth.m_nodes); });
+                           { return tangled.m_obstacle != obstacle || tangled.holds(ordered.m_nodes); });
     };
     for (const Contact *contact = first, *end = first + count; contact != end;)
     {
         const Contact* const next = std::find_if_not(contact, end, isHeld);
-        if (next != contact) addContacts(body, contact, static_cast<std::uint32_t>(next - contact), cloth);
+        if (next != contact) addContacts(body, contact, static_cast<std::uint32_t>(next - contact), ordered);
         contact = std::find_if(next, end, isHeld);
+        body.m_contacts.m_leavesOut = body.m_contacts.m_leavesOut || contact != next;
     }
 }
 
@@ -121,7 +122,8 @@ void CollisionStep::addPushes(BodyContacts& body)
     std::vector<FeatureContacts> pushes;
     for (std::size_t i = 0; i < body.m_pushes.size(); ++i)
     {
-        pushes.push_back(FeatureContacts{&body.m_pushContacts[i], 1, {body.m_pushes[i].m_node, -1, -1}, 1});
+        const OrderedFeature& node = body.m_contacts.m_order->features()[std::size_t(body.m_pushes[i].m_node)];
+        pushes.push_back(FeatureContacts{&body.m_pushContacts[i], 1, &node, 1});
         body.m_contacts.m_limit.addContactNode(body.m_pushes[i].m_node);
     }
     std::vector<FeatureContacts>& features = body.m_contacts.m_features;

@@ -6,6 +6,7 @@
 #include "bullet_plugin/adapter/margins.h"
 #include "bullet_plugin/adapter/mesh_reader.h"
 #include "bullet_plugin/adapter/vectors.h"
+#include "bullet_plugin/core/scene/mesh_pool.h"
 
 namespace drape
 {
@@ -95,13 +96,17 @@ MeshId ClothMirror::refresh(Pipeline& pipeline)
     const std::vector<std::int32_t>& triangles = m_faces.triangles();
     if (!topologyChanged() && (m_id != kNoMesh || triangles.empty()))
     {
-        if (m_takenUp) cutParts();
+        if (!m_takenUp) return m_id;
+        cutParts();
+        if (m_id != kNoMesh) m_order.build(m_parts, pipeline.cloths().existing(m_id).m_topology);
         return m_id;
     }
     if (m_id != kNoMesh) pipeline.remove(m_id);
     m_id = kNoMesh;
     readTopology();
-    if (!triangles.empty() && m_faces.nodeCount() > 0) m_id = addCopy(pipeline);
+    if (triangles.empty() || m_faces.nodeCount() == 0) return m_id;
+    m_id = addCopy(pipeline);
+    m_order.build(m_parts, pipeline.cloths().existing(m_id).m_topology);
     return m_id;
 }
 

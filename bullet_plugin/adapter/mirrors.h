@@ -20,7 +20,7 @@
 #include "BulletSoftBody/btSoftBody.h"
 #include "LinearMath/btTransform.h"
 #include "bullet_plugin/core/solver/cloth_faces.h"
-#include "bullet_plugin/core/solver/cloth_parts.h"
+#include "bullet_plugin/core/solver/feature_order.h"
 #include "bullet_plugin/adapter/kinematic_motion.h"
 #include "bullet_plugin/adapter/solid_links.h"
 #include "bullet_plugin/core/pipeline/pipeline.h"
@@ -70,6 +70,8 @@ public:
     bool hasForeignFaces() const { return m_hasForeignFaces || m_links.hasForeign(); }
     // Parts cut by the nodes' positions when the topology was read or last revalidated.
     const ClothParts& parts() const { return m_parts; }
+    // Order in which sweeps visit the features.
+    const FeatureOrder& order() const { return m_order; }
     // Requests a full check, before a first or renewed use: the body may be another one at the same address.
     void takeUp() { m_fullCheck = m_takenUp = true; }
     // Declares that the nodes are no longer where the last step left them. Each pair of the cloth is then checked for
@@ -101,6 +103,7 @@ private:
     SolidLinks m_links;
     int m_faceCount = 0;  // entries of m_faces without links
     ClothParts m_parts;
+    FeatureOrder m_order;
     const void* m_nodeArray = nullptr;
     const void* m_faceArray = nullptr;
     int m_cursor = 0;

@@ -323,7 +323,7 @@ bool SoftBodySolver::Work::take(btSoftBody& body)
     if (!contacts && !substeps) return false;
     if (substeps)
     {
-        substeps->begin(body, contacts ? &contacts->nodes() : nullptr, m_rigidBodies, &m_threads);
+        substeps->begin(body, contacts ? &contacts->m_contacts : nullptr, m_rigidBodies, &m_threads);
         ClothContacts& cloth = contacts ? contacts->m_contacts : substeps->alone();
         m_ends.emplace_back(&body, &cloth.m_nodes);
         if (contacts || substeps->rigidRows())
@@ -361,7 +361,7 @@ void SoftBodySolver::solveBodies(StepParts& parts)
     parts.m_readMs += watch.lapMs();
     std::size_t nodes = 0;
     for (const auto& end : work.m_ends)
-        if (end.second->count() <= SolveStage::kMostNodes) nodes += end.second->count();
+        nodes += end.second->count();
     SolveStage* const stage = nodes > 0 ? m_state->pipeline().solveStage(nodes) : nullptr;
     m_state->m_statistics.m_clothsOnDevice =
         work.m_solver->solve(work.m_touched, work.m_free, m_state->m_found.source(), stage);

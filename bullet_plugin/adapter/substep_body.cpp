@@ -121,20 +121,27 @@ void SubstepBody::leave(btSoftBody& body)
         body.m_nodes[static_cast<int>(i)].m_x -= vectorOf(m_accelerations[i]) * shift;
 }
 
-// Sorts the links for sweeps: the cloth is cut where its nodes are now.
-void SubstepBody::buildLinks(const btSoftBody& body)
+// Sorts the links by parts of the cloth, which is cut where its nodes are now.
+void SubstepBody::cutLinks(const btSoftBody& body)
 {
     std::vector<Vec3> positions(nodeCount(body));
     for (std::size_t i = 0; i < positions.size(); ++i)
         positions[i] = vec3Of(body.m_nodes[static_cast<int>(i)].m_q);
     m_parts.cut(std::move(positions));
+    sortLinks();
+    m_noFaces = ClothFaces({}, nodeCount(body));
+}
+
+// Sorts the links for sweeps.
+void SubstepBody::sortLinks()
+{
+    m_isSorted = false;
     for (LinkNodes& link : m_links)
     {
         const int nodes[3] = {static_cast<int>(link.m_nodes[0]), static_cast<int>(link.m_nodes[1]), -1};
         link.m_group = static_cast<std::uint32_t>(m_parts.groupOf(nodes));
     }
-    m_substeps.links().build(nodeCount(body), m_parts.leafCount(), m_links);
-    m_noFaces = ClothFaces({}, nodeCount(body));
+    m_substeps.links().build(m_parts.nodeCount(), m_parts.leafCount(), m_links, m_parts.revision());
     m_isSorted = true;
 }
 
@@ -165,7 +172,7 @@ bool SubstepBody::readTopology(const btSoftBody& body, ThreadTeam* threads)
     forRanges(count, threads, read);
     m_isSorted = !isNew;
     if (joinsOthers) return false;
-    if (isNew) buildLinks(body);
+    if (isNew) cutLinks(body);
     return true;
 }
 
@@ -202,14 +209,21 @@ void SubstepBody::readLinks(const btSoftBody& body, ThreadTeam* threads)
     if (isNew) m_substeps.links().changed();
 }
 
-void SubstepBody::begin(const btSoftBody& body, SolverNodes* recorded, RigidBodies& bodies, ThreadTeam* threads)
+void SubstepBody::begin(const btSoftBody& body, ClothContacts* recorded, RigidBodies& bodies, ThreadTeam* threads)
 {
+    // Links and contacts have the same parts. A cloth of one part is the same however it is cut.
+    if (recorded && recorded->m_parts->revision() != m_parts.revision())
+    {
+        const bool isNew = std::max(recorded->m_parts->leafCount(), m_parts.leafCount()) > 1;
+        m_parts = *recorded->m_parts;
+        if (isNew) sortLinks();
+    }
     readLinks(body, threads);
-    SolverNodes& nodes = recorded ? *recorded : m_alone.m_nodes;
+    SolverNodes& nodes = recorded ? recorded->m_nodes : m_alone.m_nodes;
     if (!recorded)
     {
         nodes.resize(nodeCount(body));
-        m_alone.start(m_parts);
+        m_alone.start(kNoMesh, m_parts, nullptr);
         m_alone.m_limit.startStep(m_noFaces);
         m_alone.m_perSecond = static_cast<float>(body.m_sst.isdt);
     }

@@ -43,9 +43,9 @@ public:
     // Returns the number of substeps: piterations, but at least kLeastSubsteps.
     static int substepsOf(const btSoftBody& body);
 
-    // Prepares the solver's step, after canSolveNow(). recorded: nodes with the paths that were recorded; null: those
-    // of alone(), which are recorded now. bodies: gets the rigid bodies that the body touches or hangs on.
-    void begin(const btSoftBody& body, SolverNodes* recorded, RigidBodies& bodies, ThreadTeam* threads);
+    // Prepares the solver's step, after canSolveNow(). recorded: the cloth with the paths that were recorded; null:
+    // alone(), whose paths are recorded now. bodies: gets the rigid bodies that the body touches or hangs on.
+    void begin(const btSoftBody& body, ClothContacts* recorded, RigidBodies& bodies, ThreadTeam* threads);
     // The cloth of a body without pairs.
     ClothContacts& alone() { return m_alone; }
     Substeps& substeps() { return m_substeps; }
@@ -65,7 +65,8 @@ private:
 
     bool readTopology(const btSoftBody& body, ThreadTeam* threads);
     void readLinks(const btSoftBody& body, ThreadTeam* threads);
-    void buildLinks(const btSoftBody& body);
+    void cutLinks(const btSoftBody& body);
+    void sortLinks();
 
     bool m_isPredicted = false;
     std::vector<btVector3> m_velocities;  // before the prediction, m/s
@@ -73,7 +74,7 @@ private:
     std::vector<Prediction> m_predictions;
     std::vector<LinkNodes> m_links;  // links as sorted for sweeps
     bool m_isSorted = false;         // false if memory ran out while the links were sorted
-    ClothParts m_parts;              // when they were sorted
+    ClothParts m_parts;              // by which they are sorted
     ClothContacts m_alone;           // for steps without pairs
     ClothFaces m_noFaces;
     Substeps m_substeps;

@@ -1,19 +1,27 @@
-// Records of a cloth step on a device (solver/solve_cloths.cl). SI units.
+// Records of a cloth step on a device (solver/). SI units.
 //
-// All cloths of a launch share the arrays, in which a cloth's elements are adjacent. Indices of nodes count from the
-// cloth's first node, all others over all cloths.
+// All cloths of a step share the arrays. A cloth's nodes are adjacent, sorted by the leaves of its parts
+// (core/solver/cloth_parts.h). Indices of nodes count from the cloth's first node, all others over all cloths.
 #ifndef DRAPE_SHARED_SOLVE_STEP_H
 #define DRAPE_SHARED_SOLVE_STEP_H
 
+#include "mesh.h"
 #include "solver.h"
 
 DRAPE_NAMESPACE_BEGIN
 
-// Work-items of a cloth's work-group: on a GPU few for small cloths, so that a compute unit has several groups, and for
-// others as many as their registers allow. On a CPU one, without barriers.
+// Work-items of a work-group: on a GPU few for small cloths, so that a compute unit has several groups, and for others
+// as many as their registers allow. On a CPU one, without barriers.
 #define DRAPE_SOLVE_GROUP 512
 #define DRAPE_SOLVE_SMALL_GROUP 128
+#define DRAPE_SOLVE_JOIN_GROUP 128  // for groups that join leaves
 #define DRAPE_SOLVE_CPU_GROUP 1
+
+// Nodes of a leaf at most: they lie in a work-group's local memory, mostly 48 KiB.
+#define DRAPE_LEAF_NODES 2048
+
+// Sweeps that close the contacts at most, whose violations are kept.
+#define DRAPE_CLOSING_SWEEPS 128
 
 // Words of the three arenas (shared/arenas.h) that hold the step's input, the topology and the working memory.
 typedef struct SolveInputWord
@@ -39,19 +47,11 @@ typedef struct SolveRange
 typedef struct SolveCloth
 {
     SolveRange m_nodes;
-    SolveRange m_features;  // with contacts
-    SolveRange m_links;
-    SolveRange m_linkBatches;
-    SolveRange m_nodeBatches;  // contacts of nodes
-    SolveRange m_faceBatches;  // contacts of nodes and faces
-    SolveRange m_edgeBatches;  // contacts of edges
-    SolveRange m_regions;      // obstacles that limit the motion
-    DRAPE_UINT m_faceLists;    // position of the nodes' lists of faces, see SolveLayout
+    SolveRange m_surfaces;  // of obstacles, by rising slot
+    SolveRange m_regions;   // obstacles that limit the motion
+    DRAPE_UINT m_faceLists;  // position of the nodes' lists of faces, see SolveLayout
     DRAPE_UINT m_substeps;
     DRAPE_UINT m_linkSweeps;    // in each substep, each with a sweep over the contacts
-    DRAPE_UINT m_leastClosing;  // closing sweeps up to which the finer tolerance counts
-    DRAPE_UINT m_mostClosing;
-    DRAPE_UINT m_levels;        // levels of the cloth's groups
     DRAPE_UINT m_actingSweeps;  // see ContactSweep::restart()
     DRAPE_UINT m_rests;         // true if all obstacles rest
     float m_substepTime;        // s
@@ -62,6 +62,7 @@ typedef struct SolveCloth
     float m_perShift;           // 1/s, velocity per metre of a closing shift
     float m_perSecond;          // 1/s, steps per second
     float m_hardness;           // see targetGap()
+    float m_friction;           // the cloth's factor of a contact's coefficient
     float m_mostThickness;      // m
     float m_fineViolation;      // m, worst violation that may remain before m_leastClosing sweeps are done
     float m_mostViolation;      // m, and after
@@ -70,15 +71,44 @@ typedef struct SolveCloth
     float m_retreat;            // m, bound on the displacement of a node by an obstacle's motion
     float m_sure;               // m, see MotionLimit
     float m_leastTolerance;     // m, see MotionLimit
+    DRAPE_UINT m_unused;
 } SolveCloth;
 
-// Links or features of one colour and level.
+// A group of a cloth's parts: a leaf, or what joins two groups. Its buckets are adjacent: those of nodes, of faces and
+// of edges.
+typedef struct SolveGroup
+{
+    DRAPE_UINT m_cloth;
+    SolveRange m_nodes;  // of a leaf; none otherwise
+    SolveRange m_linkBatches;
+    DRAPE_UINT m_firstBucket;
+    DRAPE_UINT m_nodeBuckets, m_faceBuckets, m_edgeBuckets;  // their numbers
+} SolveGroup;
+
+// Links of one colour.
 typedef struct SolveBatch
 {
     DRAPE_UINT m_first, m_last;
     DRAPE_UINT m_serial;  // they may share nodes: one after the other
-    DRAPE_UINT m_level;   // level of their groups, from the leaves on
 } SolveBatch;
+
+// Where the contacts of a cloth feature belong.
+typedef struct SolveSlot
+{
+    DRAPE_UINT m_bucket;    // DRAPE_NO_BUCKET: in no cloth of the step
+    DRAPE_UINT m_nodes[3];  // DRAPE_NO_NODE where unused
+} SolveSlot;
+#define DRAPE_NO_BUCKET 0xffffffffu
+#define DRAPE_NO_NODE 0xffffffffu
+
+// A bucket: contacts of features that have one group, kind and colour, so that two features share no node.
+typedef struct SolveBucket
+{
+    DRAPE_UINT m_count;   // contacts
+    DRAPE_UINT m_first;   // place of the first one
+    DRAPE_UINT m_filled;  // contacts that have a place
+    DRAPE_UINT m_pushed;  // the stage in which one pushed last
+} SolveBucket;
 
 typedef struct SolveLink
 {
@@ -86,15 +116,6 @@ typedef struct SolveLink
     float m_restSquared;  // m²
     float m_strength;     // see LinkSweep::set()
 } SolveLink;
-
-// A node, face or edge of a cloth, with its contacts.
-typedef struct SolveFeature
-{
-    DRAPE_UINT m_nodes[3];
-    DRAPE_UINT m_nodeCount;
-    DRAPE_UINT m_firstContact, m_contactCount;
-    DRAPE_UINT m_unused[2];
-} SolveFeature;
 
 // Properties that contacts of a cloth with one obstacle have in common. m_map: the motion, three rows of rotation and
 // shift.
@@ -104,7 +125,7 @@ typedef struct SolveSurface
     float m_thickness;  // m
     float m_friction;   // coefficient, the cloth's included
     DRAPE_UINT m_moves;
-    DRAPE_UINT m_unused;
+    DRAPE_UINT m_obstacle;  // slot
 } SolveSurface;
 
 // A link's nodes apart from each other at the step's start, and its length.
@@ -114,29 +135,23 @@ typedef struct SolveSpan
     float m_restSquared;  // m²
 } SolveSpan;
 
-// Flags of a bounding plane: there is a row; the plane turns with its face.
-#define DRAPE_PLANE_MADE 1u
-#define DRAPE_PLANE_TURNS 2u
+// Flags of a contact: it has a row; its plane turns with its face. The number of its nodes is behind them.
+#define DRAPE_CONTACT_MADE 1u
+#define DRAPE_CONTACT_TURNS 2u
+#define DRAPE_CONTACT_COUNT(flags) ((flags) >> 8)
 
-// A bounding plane of a contact: it is not violated while n.(d0 + w1 (d1 - d0) + w2 (d2 - d0)) reaches the level.
-typedef struct SolvePlane
+// A contact in the order of sweeps, with its bounding plane: it is not violated while n.(d0 + w1 (d1 - d0) + w2 (d2 -
+// d0)) reaches the level. Read as vectors of four numbers.
+typedef struct SolveContact
 {
     Vec3 m_normal;
     float m_level;         // m, with the margin for rounding
     float m_weights[2];    // second and third node
-    DRAPE_UINT m_flags;    // DRAPE_PLANE_MADE …
+    DRAPE_UINT m_flags;    // DRAPE_CONTACT_MADE ...
     DRAPE_UINT m_pushing;  // the stage in which the row pushed last
-} SolvePlane;
-
-// Working memory of a feature. Contacts beyond the list are not violated while no node is farther than the clearance
-// from its reference.
-typedef struct SolveFeatureState
-{
-    Vec3 m_references[3];    // m, displacements of the nodes when the contacts were listed
-    float m_clearance;       // m
-    DRAPE_UINT m_listCount;  // contacts in the list
-    DRAPE_UINT m_unused;
-} SolveFeatureState;
+    DRAPE_UINT m_nodes[3];  // the first one again where unused
+    DRAPE_UINT m_rank;      // among the contacts of its feature
+} SolveContact;
 
 // An obstacle that limits the motion near it.
 typedef struct SolveRegion
@@ -155,25 +170,71 @@ typedef struct SolveAllowance
     DRAPE_UINT m_isNear;
 } SolveAllowance;
 
+// Working memory of a cloth.
+typedef struct SolveProgress
+{
+    DRAPE_UINT m_blocks;    // blocks of contacts as the host counts them, see mostClosingSweeps()
+    DRAPE_UINT m_far;       // the last pass in which a node was far from its path's end
+    DRAPE_UINT m_ended;     // the round in which the step ended; 0: it has not
+    DRAPE_UINT m_isNear;    // true if a contact ends so near that a surface may have been passed
+    DRAPE_UINT m_refused;   // true if a feature has too many contacts
+    DRAPE_UINT m_unused[3];
+    float m_worst[DRAPE_CLOSING_SWEEPS + 4];  // m, by closing sweep
+} SolveProgress;
+
 // A result, by cloth.
 typedef struct SolveResult
 {
     DRAPE_UINT m_mayHavePassed;  // true if a contact ends so near that a surface may have been passed
-    DRAPE_UINT m_closingSweeps;  // closing sweeps that were made
+    DRAPE_UINT m_isOpen;         // true if the cloth needs more closing sweeps than were enqueued
+    DRAPE_UINT m_refused;        // true if the device cannot solve the cloth
+    DRAPE_UINT m_unused;
 } SolveResult;
 
-// Positions of the arrays, in words.
+// Positions of the arrays, in words, and numbers of elements.
 typedef struct SolveLayout
 {
-    // In the step's input.
-    DRAPE_UINT m_cloths, m_paths, m_accelerations, m_batches, m_features, m_surfaceOf, m_surfaces, m_regions;
-    // In the working memory.
-    DRAPE_UINT m_nodes, m_states, m_planes, m_acting, m_allowances, m_results;
-    DRAPE_UINT m_spans, m_featureStates, m_lists;
+    DRAPE_UINT m_nodeCount, m_clothCount, m_bucketCount, m_obstacleCount;
+    // In the step's input. By node in the caller's order: paths, accelerations.
+    DRAPE_UINT m_cloths, m_givenPaths, m_givenAccelerations, m_surfaces, m_regions, m_obstacles;
+    // In the working memory. m_order: by contact in the order of sweeps, its place in the list of contacts.
+    DRAPE_UINT m_nodes, m_states, m_results;
+    DRAPE_UINT m_buckets, m_progress, m_allowances, m_total;
+    DRAPE_UINT m_paths, m_accelerations, m_sorted, m_order, m_acting, m_spans, m_marks;
     // In the topology: the links; by node, the position of its faces, then the last one's end; the faces of the nodes;
-    // three nodes for each face.
-    DRAPE_UINT m_links, m_faceLists, m_facesOfNode, m_faces;
+    // three nodes for each face; by node, its place in the caller's order; by bucket, its cloth.
+    DRAPE_UINT m_links, m_linkBatches, m_groups, m_levelGroups, m_faceLists, m_facesOfNode, m_faces, m_places, m_slots,
+        m_bucketCloths;
 } SolveLayout;
+
+// Passes of a step over the groups of a level, or over leaves.
+#define DRAPE_PASS_BEGIN 0u       // all groups: nodes at the paths' starts, links apart
+#define DRAPE_PASS_ADVANCE 1u     // leaves: ends a substep and begins the next one
+#define DRAPE_PASS_LIMIT 2u       // leaves: how far nodes may leave their paths beside resting obstacles
+#define DRAPE_PASS_BRING_BACK 3u  // leaves: brings these nodes back
+#define DRAPE_PASS_NEAR 4u        // leaves: nodes near a moving obstacle
+#define DRAPE_PASS_CARRY_BACK 5u  // leaves: brings these nodes back
+#define DRAPE_PASS_LINKS 6u       // a level
+#define DRAPE_PASS_FACES 7u       // a level: contacts of nodes and faces
+#define DRAPE_PASS_EDGES 8u       // a level: contacts of edges, then those that act
+#define DRAPE_PASS_FAR 9u         // leaves: finds nodes far from their paths' ends
+#define DRAPE_PASS_NODES 10u      // a level: contacts of nodes alone
+#define DRAPE_PASS_END 11u        // leaves: velocities of the closing shifts
+#define DRAPE_PASS_SPEEDS 12u       // a level: nodes and faces limit speeds
+#define DRAPE_PASS_EDGE_SPEEDS 13u  // a level
+#define DRAPE_PASS_RESULT 14u       // leaves
+
+// A pass. Cloths with fewer substeps, or that need no closing sweep of this number, take no part.
+typedef struct SolvePass
+{
+    DRAPE_UINT m_pass;
+    DRAPE_UINT m_firstGroup;  // in the list of groups by level
+    DRAPE_UINT m_substep;     // DRAPE_CLOSING: after the last one
+    DRAPE_UINT m_sweep;       // closing sweep
+    DRAPE_UINT m_region;      // of a moving obstacle, counted from the cloth's first
+    DRAPE_UINT m_round;       // of passes that end the step, counted from 1
+} SolvePass;
+#define DRAPE_CLOSING 0xffffffffu
 
 DRAPE_NAMESPACE_END
 

@@ -1,21 +1,34 @@
 // Arguments of the kernels that solve cloths (shared/bindings.h). input, work, topology: see SolveLayout. contacts: of
-// the step, in canonical order. nodes: of the work-group's cloth.
+// the step, in canonical order, behind their head. nodes, marks: of a work-group's leaf.
 #ifndef DRAPE_SOLVER_BINDINGS_H
 #define DRAPE_SOLVER_BINDINGS_H
 
 #include "../shared/bindings.h"
 #include "../shared/contact.h"
+#include "../shared/mesh.h"
 #include "../shared/solve_step.h"
 
-#define DRAPE_SOLVE_CLOTHS                                                                                          \
+#define DRAPE_ORDER_CONTACTS                                                                                        \
     DRAPE_VALUE(SolveLayout, layout), DRAPE_READS(SolveInputWord, input), DRAPE_READS(SolveTopologyWord, topology), \
-        DRAPE_READS(Contact, contacts), DRAPE_UPDATES(SolveWorkWord, work), DRAPE_LOCAL(SolverNode, nodes)
+        DRAPE_READS(Contact, contacts), DRAPE_UPDATES(SolveWorkWord, work)
+
+#define DRAPE_SOLVE_GROUPS DRAPE_ORDER_CONTACTS, DRAPE_VALUE(SolvePass, pass)
+
+#define DRAPE_SOLVE_LEAVES DRAPE_SOLVE_GROUPS, DRAPE_LOCAL(SolverNode, nodes), DRAPE_LOCAL(DRAPE_UINT, marks)
 
 #ifndef __OPENCL_VERSION__
 namespace drape::kernels
 {
-DRAPE_BIND(solveCloths, DRAPE_SOLVE_CLOTHS)
-DRAPE_BIND(solveSmallCloths, DRAPE_SOLVE_CLOTHS)
+DRAPE_BIND(takePaths, DRAPE_ORDER_CONTACTS)
+DRAPE_BIND(countContacts, DRAPE_ORDER_CONTACTS)
+DRAPE_BIND(placeBuckets, DRAPE_ORDER_CONTACTS)
+DRAPE_BIND(gatherContacts, DRAPE_ORDER_CONTACTS)
+DRAPE_BIND(prepareContacts, DRAPE_ORDER_CONTACTS)
+DRAPE_BIND(solveCloths, DRAPE_SOLVE_LEAVES)
+DRAPE_BIND(solveSmallCloths, DRAPE_SOLVE_LEAVES)
+DRAPE_BIND(sweepLeaves, DRAPE_SOLVE_LEAVES)
+DRAPE_BIND(sweepGroups, DRAPE_SOLVE_GROUPS)
+DRAPE_BIND(passNodes, DRAPE_SOLVE_GROUPS)
 }  // namespace drape::kernels
 #endif
 

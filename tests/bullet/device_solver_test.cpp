@@ -92,10 +92,29 @@ TEST_P(DeviceSolverTest, AClothDropsAsOnTheHost)
     EXPECT_EQ(expectSame({clothsOf(1, 17, 20)}), std::size_t(kSteps));
 }
 
-// Two leaves of a cloth, whose contacts need several levels of batches.
+// Cloths of two and of eight leaves, which take launches for each level.
 TEST_P(DeviceSolverTest, ALargeClothDropsAsOnTheHost)
 {
     EXPECT_EQ(expectSame({clothsOf(1, 52, 2)}), std::size_t(kSteps));
+    EXPECT_EQ(expectSame({clothsOf(1, 100, 10)}), std::size_t(kSteps));
+}
+
+TEST_P(DeviceSolverTest, AMovingObstacleCarriesALargeClothAsOnTheHost)
+{
+    Scene scene = {clothsOf(1, 60, 1)};
+    scene.m_shift = btVector3(btScalar(0.01), btScalar(0.005), 0);
+    scene.m_turn = btScalar(0.05);
+    EXPECT_EQ(expectSame(scene), std::size_t(kSteps));
+}
+
+TEST_P(DeviceSolverTest, ClothsOfAllSizesDropTogetherAsOnTheHost)
+{
+    const auto addAll = [](DropWorld& world, std::vector<btSoftBody*>& cloths)
+    {
+        for (const int nodes : {9, 60, 30, 100})
+            clothsOf(1, nodes, 2)(world, cloths);
+    };
+    EXPECT_EQ(expectSame({addAll}), std::size_t(4 * kSteps));
 }
 
 TEST_P(DeviceSolverTest, ManyClothsDropAsOnTheHost)
@@ -125,13 +144,15 @@ TEST_P(DeviceSolverTest, APinnedFlagWithoutContactsMovesAsOnTheHost)
     EXPECT_EQ(expectSame({addFlag}), std::size_t(kSteps));
 }
 
-// A cloth with more nodes than a work-group's local memory holds is solved on the host, beside one on the device.
-TEST_P(DeviceSolverTest, TheHostSolvesWhatDoesNotFitTheDevice)
+// A cloth that hangs on a rigid body is solved on the host, beside one on the device.
+TEST_P(DeviceSolverTest, TheHostSolvesWhatTheDeviceCannot)
 {
-    const auto addBoth = [](DropWorld& world, std::vector<btSoftBody*>& cloths)
+    btBoxShape box(btVector3(btScalar(0.1), btScalar(0.1), btScalar(0.1)));
+    const auto addBoth = [&](DropWorld& world, std::vector<btSoftBody*>& cloths)
     {
-        clothsOf(1, 60, 0)(world, cloths);
-        clothsOf(1, 9, 0)(world, cloths);
+        clothsOf(2, 9, 0)(world, cloths);
+        const btTransform aside(btQuaternion::getIdentity(), btVector3(5, 0, 0));
+        cloths[0]->appendAnchor(0, &world.addKinematic(box, aside), true);
     };
     EXPECT_EQ(expectSame({addBoth}), std::size_t(kSteps));
 }

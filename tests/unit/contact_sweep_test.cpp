@@ -1,5 +1,6 @@
 // Contact sweeps that skip most contacts and run on several threads equal sweeps that project every contact in turn,
 // bit for bit.
+#include "bullet_plugin/core/scene/mesh_pool.h"
 #include "bullet_plugin/core/solver/contact_sweep.h"
 
 #include <gtest/gtest.h>
@@ -62,14 +63,15 @@ std::vector<Vec3> deformed(const SolverNodes& nodes)
     return starts;
 }
 
-std::vector<FeatureContacts> featuresOf(const Pipeline& pipeline, const std::vector<Contact>& contacts)
+std::vector<FeatureContacts> featuresOf(const Pipeline& pipeline, const FeatureOrder& order,
+                                        const std::vector<Contact>& contacts)
 {
     std::vector<FeatureContacts> features;
     for (const Contact& contact : contacts)
     {
         const ClothFeature cloth = pipeline.clothFeature(contact);
         if (features.empty() || features.back().m_contacts->m_slot != contact.m_slot)
-            features.push_back({&contact, 0, {cloth.m_nodes[0], cloth.m_nodes[1], cloth.m_nodes[2]}, 1});
+            features.push_back({&contact, 0, &order.features()[cloth.m_index], 1});
         ++features.back().m_count;
     }
     return features;
@@ -99,7 +101,7 @@ public:
         m_pipeline->addPair(cloth, ground, kThickness);
         m_contacts = runStep(*m_pipeline);
 
-        setCloth(start, end);
+        setCloth(cloth, start, end);
         ObstacleSurface surface;
         surface.m_moves = motion == Motion::Turns;
         writeTurn(surface.m_map);
@@ -120,7 +122,7 @@ public:
     ContactSource m_source;
 
 private:
-    void setCloth(const std::vector<float>& start, const std::vector<float>& end)
+    void setCloth(MeshId cloth, const std::vector<float>& start, const std::vector<float>& end)
     {
         const std::uint32_t count = std::uint32_t(start.size() / 3);
         SolverNodes& nodes = m_cloth.m_nodes;
@@ -133,7 +135,8 @@ private:
             places.push_back(to);
         }
         m_parts.cut(places);
-        m_cloth.start(m_parts);
+        m_order.build(m_parts, m_pipeline->cloths().existing(cloth).m_topology);
+        m_cloth.start(cloth, m_parts, &m_order);
         m_cloth.m_leastThickness = m_cloth.m_mostThickness = kThickness;
         m_cloth.m_friction = 0.6f;
         m_cloth.m_hardness = 0.1f;
@@ -141,16 +144,17 @@ private:
     }
     void nameContacts()
     {
-        m_cloth.m_features = featuresOf(*m_pipeline, m_contacts);
+        m_cloth.m_features = featuresOf(*m_pipeline, m_order, m_contacts);
         m_noFaces = ClothFaces({}, m_cloth.m_nodes.count());
         m_cloth.m_limit.startStep(m_noFaces);
         for (const FeatureContacts& feature : m_cloth.m_features)
-            for (const int node : feature.m_nodes)
-                if (node >= 0) m_cloth.m_limit.addContactNode(node);
+            for (int k = 0; k < 3 && feature.nodes()[k] >= 0; ++k)
+                m_cloth.m_limit.addContactNode(feature.nodes()[k]);
     }
 
     std::unique_ptr<Pipeline> m_pipeline;
     ClothParts m_parts;
+    FeatureOrder m_order;
     ClothFaces m_noFaces;
     std::vector<Vec3> m_starts;  // carried by the obstacle
     std::vector<Contact> m_contacts;

@@ -37,30 +37,30 @@ PlainSweep::PlainSweep(const ClothContacts& cloth, const ContactSource& source, 
         row.m_speedLimit = speedLimitOf(row.m_contact);
         m_rows.push_back(row);
     }
-    sortRows(*cloth.m_parts);
+    sortRows(cloth);
 }
 
-// Sorts the contacts by group, children first, then by kind and colour. Each feature gets the least colour that no
-// earlier feature of the same group and kind has at one of its nodes.
-void PlainSweep::sortRows(const ClothParts& parts)
+// Sorts the contacts by group, children first, then by kind and colour. Each feature of the cloth has the least colour
+// that no earlier feature of the same group and kind has at one of its nodes.
+void PlainSweep::sortRows(const ClothContacts& cloth)
 {
-    std::map<std::pair<std::size_t, Kind>, std::map<int, std::set<int>>> taken;
-    int colour = 0;
-    for (std::size_t i = 0; i < m_rows.size(); ++i)
+    std::map<std::pair<std::size_t, std::uint32_t>, std::map<int, std::set<int>>> taken;
+    std::vector<int> colours;
+    for (const OrderedFeature& feature : cloth.m_order->features())
     {
-        Row& row = m_rows[i];
-        row.m_group = parts.groupOf(row.m_contact.m_nodes);
-        if (i == 0 || row.m_detected.m_slot != m_rows[i - 1].m_detected.m_slot)
-        {
-            auto& nodes = taken[{row.m_group, kindOf(row.m_contact)}];
-            const auto isTaken = [&](int node) { return node >= 0 && nodes[node].count(colour) > 0; };
-            colour = 0;
-            while (std::any_of(row.m_contact.m_nodes, row.m_contact.m_nodes + 3, isTaken))
-                ++colour;
-            for (const int node : row.m_contact.m_nodes)
-                nodes[node].insert(colour);
-        }
-        row.m_colour = colour;
+        auto& nodes = taken[{cloth.m_parts->groupOf(feature.m_nodes), feature.m_kind}];
+        int colour = 0;
+        const auto isTaken = [&](int node) { return node >= 0 && nodes[node].count(colour) > 0; };
+        while (std::any_of(feature.m_nodes, feature.m_nodes + 3, isTaken))
+            ++colour;
+        for (const int node : feature.m_nodes)
+            nodes[node].insert(colour);
+        colours.push_back(colour);
+    }
+    for (Row& row : m_rows)
+    {
+        row.m_group = cloth.m_parts->groupOf(row.m_contact.m_nodes);
+        row.m_colour = colours[row.m_detected.m_slot];  // there is one cloth
     }
     const auto keyOf = [](const Row& row)
     { return std::make_tuple(-std::ptrdiff_t(row.m_group), kindOf(row.m_contact), row.m_colour); };

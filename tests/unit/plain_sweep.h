@@ -60,7 +60,7 @@ private:
     };
 
     static Kind kindOf(const SolverContact& contact);
-    void sortRows(const ClothParts& parts);
+    void sortRows(const ClothContacts& cloth);
     float sweep(std::initializer_list<Kind> kinds);
     void limitSpeed(const Row& row);
     float sweepEdges();

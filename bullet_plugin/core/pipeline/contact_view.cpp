@@ -64,9 +64,20 @@ std::size_t obstacleSlot(const MeshPool& obstacles, const Contact& contact)
 
 ClothFeature clothFeatureOf(const MeshPool& cloths, const Contact& contact)
 {
-    const PooledFeature feature = pooledFeature(cloths, contact);
-    const PooledMesh& cloth = cloths.mesh(feature.m_slot);
-    return ClothFeature{cloth.m_id, {nodeOf(feature, cloth, 0), nodeOf(feature, cloth, 1), nodeOf(feature, cloth, 2)}};
+    const std::uint32_t index = contact.m_clothFeature;
+    if (contact.m_kind == DRAPE_NODE_FACE)
+    {
+        const PooledMesh& cloth = cloths.mesh(cloths.slotOfVertex(index));
+        return {cloth.m_id, std::size_t(index - cloth.m_firstVertex)};
+    }
+    if (contact.m_kind == DRAPE_FACE_VERTEX)
+    {
+        const PooledMesh& cloth = cloths.mesh(cloths.triangles()[index].m_mesh);
+        return {cloth.m_id, cloth.m_topology.m_vertexCount + (index - cloth.m_firstTriangle)};
+    }
+    const PooledMesh& cloth = cloths.mesh(cloths.slotOfEdge(index));
+    const Topology& topology = cloth.m_topology;
+    return {cloth.m_id, topology.m_vertexCount + topology.m_triangles.size() + (index - cloth.m_firstEdge)};
 }
 
 Vec3 clothPoint(const MeshPool& cloths, const float* positions, const Contact& contact)

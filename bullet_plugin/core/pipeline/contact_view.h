@@ -51,7 +51,7 @@ struct SelfContactView
 struct ClothFeature
 {
     MeshId m_cloth;
-    std::int32_t m_nodes[3];  // indices in that cloth; -1 where unused
+    std::size_t m_index;  // among the cloth's nodes, then its triangles, then its edges (FeatureOrder::features())
 };
 
 // Resolve a contact of the step with these pairs; the joined scene must be unchanged since.

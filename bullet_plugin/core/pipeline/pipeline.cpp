@@ -292,8 +292,13 @@ ClothFeature Pipeline::clothFeature(const Contact& contact) const
     return clothFeatureOf(m_implementation->m_scene.m_cloths, contact);
 }
 
-std::size_t Pipeline::obstacleSlot(const Contact& contact) const
+const MeshPool& Pipeline::cloths() const
 {
-    return drape::obstacleSlot(m_implementation->m_scene.m_obstacles, contact);
+    return m_implementation->m_scene.m_cloths;
+}
+
+const MeshPool& Pipeline::obstacles() const
+{
+    return m_implementation->m_scene.m_obstacles;
 }
 }  // namespace drape

@@ -25,6 +25,7 @@
 
 namespace drape
 {
+class MeshPool;
 class MeshProbe;
 class SolveStage;
 
@@ -148,8 +149,9 @@ public:
     SelfContactView viewSelf(const Contact& contact) const;
     // Resolves only the cloth's part of a contact of finish(), at a lower cost.
     ClothFeature clothFeature(const Contact& contact) const;
-    // Returns the slot of the obstacle of a contact of finish().
-    std::size_t obstacleSlot(const Contact& contact) const;
+    // Return the meshes, valid until one is added or removed. Contacts number features over them.
+    const MeshPool& cloths() const;
+    const MeshPool& obstacles() const;
 
 private:
     struct Implementation;

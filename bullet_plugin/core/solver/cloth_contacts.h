@@ -5,8 +5,8 @@
 #include <limits>
 #include <vector>
 
-#include "cloth_parts.h"
 #include "contact_source.h"
+#include "feature_order.h"
 #include "motion_limit.h"
 #include "solver_nodes.h"
 
@@ -17,19 +17,29 @@ struct FeatureContacts
 {
     const Contact* m_contacts;  // the pipeline's, until its next submit
     std::uint32_t m_count;
-    int m_nodes[3];     // indices of the cloth's nodes; -1 where unused
-    float m_leastTime;  // earliest time of impact; 1 when nothing was passed
+    const OrderedFeature* m_feature;  // of the cloth's order
+    float m_leastTime;                // earliest time of impact; 1 when nothing was passed
 
-    std::size_t nodeCount() const { return m_nodes[1] < 0 ? 1 : m_nodes[2] < 0 ? 2 : 3; }
-    // Returns 0 for a node, 1 for a face, 2 for an edge.
-    std::uint32_t kind() const { return m_nodes[1] < 0 ? 0 : m_nodes[2] < 0 ? 2 : 1; }
+    // Returns the indices of the cloth's nodes; -1 where unused.
+    const int* nodes() const { return m_feature->m_nodes; }
+};
+
+// An obstacle beside which a cloth has a pair.
+struct ClothObstacle
+{
+    MeshId m_mesh;
+    float m_thickness;  // m
 };
 
 struct ClothContacts
 {
-    const ClothParts* m_parts = nullptr;  // the caller owns them
+    MeshId m_mesh = kNoMesh;                // the pipeline's; none for a cloth without pairs
+    const ClothParts* m_parts = nullptr;    // the caller owns them
+    const FeatureOrder* m_order = nullptr;  // the caller's; null for a cloth without contacts
     SolverNodes m_nodes;
     std::vector<FeatureContacts> m_features;  // in canonical order
+    bool m_leavesOut = false;               // m_features lacks contacts that the detection found
+    std::vector<ClothObstacle> m_obstacles;  // in the order of the limit's regions
     MotionLimit m_limit;
     float m_leastThickness = std::numeric_limits<float>::infinity(), m_mostThickness = 0;  // m, over the cloth's pairs
     float m_friction = 0;          // the cloth's factor of a contact's coefficient
@@ -39,12 +49,16 @@ struct ClothContacts
     bool m_mayHavePassed = false;  // a contact is left so near that a surface may have been passed
 
     // Begins another step; memory is kept.
-    void start(const ClothParts& parts)
+    void start(MeshId mesh, const ClothParts& parts, const FeatureOrder* order)
     {
+        m_mesh = mesh;
         m_parts = &parts;
+        m_order = order;
         m_leastThickness = std::numeric_limits<float>::infinity();
         m_mostThickness = 0;
         m_features.clear();
+        m_leavesOut = false;
+        m_obstacles.clear();
         m_limit.clear();
         m_mayHavePassed = false;
     }

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "kernels/lib/vec3.h"
+#include "revision.h"
 
 namespace drape
 {
@@ -77,6 +78,7 @@ void ClothParts::cut(std::vector<Vec3> places)
         }
         m_firsts = finer;
     }
+    m_revision = newRevision();
     m_leafOf.resize(places.size());
     for (std::size_t leaf = 0; leaf < leafCount(); ++leaf)
     {

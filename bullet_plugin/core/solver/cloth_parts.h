@@ -10,6 +10,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "kernels/shared/types.h"
@@ -28,6 +29,8 @@ public:
     // the order of work. A position that is not a number counts as 0.
     void cut(std::vector<Vec3> places);
 
+    // Differs after cut() from that of any other cut.
+    std::uint64_t revision() const { return m_revision; }
     std::size_t nodeCount() const { return m_leafOf.size(); }
     std::size_t leafCount() const { return m_firsts.size() - 1; }
     std::size_t groupCount() const { return 2 * leafCount(); }  // includes the unused group 0
@@ -57,6 +60,7 @@ public:
     }
 
 private:
+    std::uint64_t m_revision = 0;
     std::vector<std::size_t> m_leafOf;  // by node, its leaf group
     std::vector<int> m_order;
     std::vector<std::size_t> m_firsts{0, 0};

@@ -43,46 +43,19 @@ void ContactGroup::clear()
     m_pushingBlocks.clear();
 }
 
-// Sorts the features of each kind by their colours.
-void ContactGroup::sortByColour(Colouring& colouring)
+void ContactGroup::makeBlocks(const SweptCloth& cloth)
 {
-    struct Coloured
+    const auto isBefore = [](const FeatureContacts* a, const FeatureContacts* b)
     {
-        std::uint32_t m_kind, m_colour;
-        const FeatureContacts* m_feature;
+        const OrderedFeature &first = *a->m_feature, &second = *b->m_feature;
+        return first.m_kind != second.m_kind ? first.m_kind < second.m_kind : first.m_colour < second.m_colour;
     };
-    std::vector<Coloured> coloured;
-    coloured.reserve(m_features.size());
-    std::uint32_t kind = 0;
-    std::size_t first = 0;
-    const auto release = [&](std::size_t last)
-    {
-        for (; first < last; ++first)
-            colouring.release(m_features[first]->m_nodes, m_features[first]->nodeCount());
-    };
-    for (std::size_t i = 0; i < m_features.size(); ++i)
-    {
-        if (m_features[i]->kind() != kind) release(i);
-        kind = m_features[i]->kind();
-        const std::uint32_t colour = colouring.take(m_features[i]->m_nodes, m_features[i]->nodeCount());
-        coloured.push_back({kind, colour, m_features[i]});
-    }
-    release(m_features.size());
-    const auto keyOf = [](const Coloured& one) { return one.m_kind * kColours + one.m_colour; };
-    std::stable_sort(coloured.begin(), coloured.end(),
-                     [&](const Coloured& a, const Coloured& b) { return keyOf(a) < keyOf(b); });
-    std::transform(coloured.begin(), coloured.end(), m_features.begin(),
-                   [](const Coloured& one) { return one.m_feature; });
-}
-
-void ContactGroup::makeBlocks(const SweptCloth& cloth, Colouring& colouring)
-{
-    sortByColour(colouring);
+    std::stable_sort(m_features.begin(), m_features.end(), isBefore);
     for (const FeatureContacts* feature : m_features)
     {
         addFeature(cloth, *feature);
-        if (feature->m_nodes[1] < 0) m_nodeBlocks = m_faceBlocks = m_blocks.size();
-        if (feature->m_nodes[2] >= 0) m_faceBlocks = m_blocks.size();
+        if (feature->m_feature->m_kind == kNodeFeature) m_nodeBlocks = m_blocks.size();
+        if (feature->m_feature->m_kind != kEdgeFeature) m_faceBlocks = m_blocks.size();
     }
     m_rowsOf.assign(m_blocks.size(), BlockRows());
     m_pushing.assign(m_blocks.size(), 0);
@@ -99,8 +72,8 @@ void ContactGroup::addFeature(const SweptCloth& cloth, const FeatureContacts& fe
         block.m_count = 0;
         for (int k = 0; k < 3; ++k)
         {
-            block.m_nodes[k] = feature.m_nodes[k] >= 0 ? feature.m_nodes[k] : feature.m_nodes[0];
-            block.m_count += feature.m_nodes[k] >= 0 ? 1 : 0;
+            block.m_nodes[k] = feature.nodes()[k] >= 0 ? feature.nodes()[k] : feature.nodes()[0];
+            block.m_count += feature.nodes()[k] >= 0 ? 1 : 0;
         }
         for (int lane = 0; lane < kLanes; ++lane)
         {

@@ -1,5 +1,5 @@
 // Runs Gauss-Seidel sweeps on positions over the contacts of one group of a cloth (cloth_parts.h): nodes first, then
-// faces, then edges, each colour by colour (colouring.h).
+// faces, then edges, each colour by colour (feature_order.h).
 //
 // contact_sweep.h explains what a contact does and why. Most contacts never act in a step. A sweep tests them in
 // blocks of one cloth feature, with a margin for rounding. A contact gets a row when it is first found violated or
@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "cloth_contacts.h"
-#include "colouring.h"
 
 namespace drape
 {
@@ -46,9 +45,9 @@ public:
     // Adds a feature; features come in canonical order, nodes first, then faces. They must stay in place until the last
     // sweep.
     void add(const FeatureContacts& feature) { m_features.push_back(&feature); }
-    // Colours the features and builds the blocks. Call once, after the last feature, when the cloth's margin is known.
-    // colouring: of the cloth's nodes, none of which has a colour; the same holds afterwards.
-    void makeBlocks(const SweptCloth& cloth, Colouring& colouring);
+    // Sorts the features by colours and builds the blocks. Call once, after the last feature, when the cloth's margin is
+    // known.
+    void makeBlocks(const SweptCloth& cloth);
 
     bool empty() const { return m_features.empty(); }
     enum class Kinds
@@ -97,7 +96,6 @@ private:
         Carry m_carry;
     };
 
-    void sortByColour(Colouring& colouring);
     // Returns the first block of these kinds, and the end of the last one.
     std::pair<std::size_t, std::size_t> rangeOf(Kinds kinds) const;
     void addFeature(const SweptCloth& cloth, const FeatureContacts& feature);

@@ -30,13 +30,12 @@ public:
         m_pipeline = &pipeline;
         m_list = list;
     }
+    // Returns the pipeline; null before setPipeline().
+    const Pipeline* pipeline() const { return m_pipeline; }
     // All contacts of the detection, those of addOwn() excepted.
     ContactList list() const { return m_list; }
     // Returns what contacts with an obstacle have in common; resolve() returns it for each.
     const ObstacleSurface& surfaceOf(MeshId obstacle) const { return m_surfaces.at(obstacle); }
-    // Returns the slot of a listed contact's obstacle: contacts of one slot have one obstacle.
-    std::size_t obstacleSlot(const Contact& contact) const { return m_pipeline->obstacleSlot(contact); }
-    ContactView view(const Contact& contact) const { return m_pipeline->view(contact); }
     void nameObstacle(MeshId obstacle, const ObstacleSurface& surface) { m_surfaces[obstacle] = surface; }
     // Returns the motion of the obstacle's points in the step; null if it rests. It stays in place until the source
     // ends.

@@ -41,10 +41,9 @@ void ContactSweep::begin()
     m_worst.assign(groups, 0);
     m_near.assign(groups, 0);
     m_blocks = 0;
-    m_colouring.resize(nodes().count());
     for (const FeatureContacts& feature : contacts().m_features)
     {
-        m_groups[m_parts->groupOf(feature.m_nodes)].add(feature);
+        m_groups[feature.m_feature->m_group].add(feature);
         m_blocks += ContactGroup::blocksOf(feature.m_count);
     }
     m_cloth.m_margin = levelMargin(contacts());
@@ -76,7 +75,7 @@ void ContactSweep::work(std::size_t index, Pass pass)
     switch (pass)
     {
         case Pass::MakeBlocks:
-            return group.makeBlocks(m_cloth, m_colouring);
+            return group.makeBlocks(m_cloth);
         case Pass::Nodes:
             m_worst[index] = group.sweep(m_cloth, ContactGroup::Kinds::Nodes);
             return;

@@ -76,7 +76,6 @@ private:
     std::vector<unsigned char> m_near;                // by group: whether a contact ends near, see ContactGroup
     std::unique_ptr<std::atomic<bool>[]> m_halfDone;  // by group: whether one of its halves is done in this pass
     std::size_t m_blocks = 0;                         // in all groups
-    Colouring m_colouring;                            // groups that are processed side by side share no node
 };
 
 // Sweeps over several cloths at once. The team's threads share them if waking the threads pays.

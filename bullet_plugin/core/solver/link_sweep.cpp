@@ -83,9 +83,11 @@ void LinkSweep::addBlock(const LinkNodes& link)
     m_blocks.push_back(block);
 }
 
-void LinkSweep::build(std::size_t nodeCount, std::size_t leafCount, const std::vector<LinkNodes>& links)
+void LinkSweep::build(std::size_t nodeCount, std::size_t leafCount, const std::vector<LinkNodes>& links,
+                      std::uint64_t partsRevision)
 {
     m_leafCount = leafCount;
+    m_partsRevision = partsRevision;
     m_halfDone.reset(new std::atomic<bool>[2 * leafCount]);
     for (std::size_t group = 0; group < 2 * leafCount; ++group)
         m_halfDone[group] = false;

@@ -29,7 +29,10 @@ class LinkSweep
 {
 public:
     // Sorts the links; leafCount: a power of two, the groups are less than twice as many. Strengths are 0 until set.
-    void build(std::size_t nodeCount, std::size_t leafCount, const std::vector<LinkNodes>& links);
+    // partsRevision: of the parts that the groups are of.
+    void build(std::size_t nodeCount, std::size_t leafCount, const std::vector<LinkNodes>& links,
+               std::uint64_t partsRevision = 0);
+    std::uint64_t partsRevision() const { return m_partsRevision; }
 
     std::size_t leafCount() const { return m_leafCount; }
     std::size_t linkCount() const { return m_laneOf.size(); }
@@ -101,6 +104,7 @@ private:
     std::uint64_t m_revision = 0;
     bool m_isNew = true;
     std::size_t m_leafCount = 1;
+    std::uint64_t m_partsRevision = 0;
     std::unique_ptr<std::atomic<bool>[]> m_halfDone;  // by group: whether one of its halves is done in this sweep
 };
 }  // namespace drape

@@ -1,11 +1,17 @@
-// Solves packed cloths on a device: one launch, in which each cloth has a work-group (kernels/solver/solve_cloths.cl).
+// Solves packed cloths on a device (kernels/solver).
 //
-// Input: a packed step. Output: the nodes' displacements and states, and a result by cloth, as the host's solver would
-// give them, bit for bit. Cost: one submission and one wait. Errors: in the device.
+// First the contacts are sorted into buckets (order_contacts.cl). A cloth of one leaf is then solved by one work-group,
+// all such cloths in one launch (solve_cloths.cl). Larger cloths take launches for each pass of the step, with a
+// work-group for each group of a level: leaves in local memory, then the levels above (solve_groups.cl). Launches do not
+// depend on the number of cloths. Input: a packed step. Output: the nodes' displacements and states, and a result by
+// cloth, as the host's solver would give them, bit for bit. Cost: one submission and one wait, or more where contacts of
+// a large cloth need many closing sweeps. Errors: in the device.
 #pragma once
 
 #include "bullet_plugin/core/device/bound_kernel.h"
+#include "kernels/lib/closing_sweeps.h"
 #include "kernels/solver/solver_bindings.h"
+#include "packed_topology.h"
 #include "revision.h"
 
 namespace drape
@@ -14,8 +20,6 @@ namespace drape
 struct SolveStep
 {
     SolveLayout m_layout = {};
-    std::size_t m_clothCount = 0, m_nodeCount = 0;
-    std::size_t m_mostNodes = 0;  // nodes of the largest cloth
     const SolveInputWord* m_input = nullptr;
     std::size_t m_inputWords = 0;
     // Null: the topology of the last step.
@@ -23,16 +27,22 @@ struct SolveStep
     std::size_t m_topologyWords = 0;
     const Contact* m_contacts = nullptr;
     std::size_t m_contactCount = 0;
+    std::size_t m_clothCount = 0;
+    std::size_t m_mostNodes = 0;     // nodes of the largest leaf
+    std::size_t m_clearedWords = 0;  // words at the start of the working memory that begin as 0
+    std::size_t m_resultWords = 0;   // words behind them that are read back
     std::size_t m_workWords = 0;
-    std::size_t m_resultWords = 0;  // words at the start of the working memory that are read back
+    // Groups of cloths with one leaf, and levels of large cloths, from the leaves on.
+    SolveRange m_small = {}, m_whole = {};
+    std::vector<PackedTopology::Level> m_levels;
+    // Maxima over large cloths, and whether all of their obstacles rest.
+    std::uint32_t m_substeps = 0, m_regions = 0;
+    bool m_rests = true;
 };
 
 class SolveStage
 {
 public:
-    // Maximum nodes of a cloth: they take 16 bytes each of a work-group's local memory, mostly 48 KiB.
-    static constexpr std::size_t kMostNodes = 3000;
-
     void create(Device& device, const ProgramLoader& load);
     // Returns whether create() was called.
     bool created() const { return m_device != nullptr; }
@@ -49,18 +59,44 @@ public:
     void giveBackRoom();
 
 private:
+    // Closing sweeps of the first round, and of each later one.
+    static constexpr std::uint32_t kFirstSweeps = DRAPE_LEAST_CLOSING, kMoreSweeps = 24;
+
+    void upload(const SolveStep& step);
+    void orderContacts(const SolveStep& step);
+    template <class Kernel>
+    void solveWhole(Kernel& kernel, std::size_t gpuGroup, const SolveRange& groups);
+    void passNodes(SolvePass pass);
+    void passLevels(SolvePass pass);
+    void limit(SolvePass pass);
+    void solveLarge();
+    void close(std::uint32_t first, std::uint32_t last);
+    void endLarge(std::uint32_t sweeps);
+    void readResults();
+    bool anyOpen() const;
+    bool hasContacts() const { return m_step->m_contactCount > 0; }
+
     Device* m_device = nullptr;
     std::uint64_t m_revision = newRevision();
-    template <class Kernel>
-    void launch(Kernel& kernel, std::size_t gpuGroup, const SolveStep& step);
+    const SolveStep* m_step = nullptr;
+    std::uint32_t m_sweeps = 0, m_round = 0;  // enqueued closing sweeps, and rounds of them
 
+    BoundKernel<kernels::takePaths> m_takePaths;
+    BoundKernel<kernels::countContacts> m_countContacts;
+    BoundKernel<kernels::placeBuckets> m_placeBuckets;
+    BoundKernel<kernels::gatherContacts> m_gatherContacts;
+    BoundKernel<kernels::prepareContacts> m_prepareContacts;
     BoundKernel<kernels::solveCloths> m_solve;
     BoundKernel<kernels::solveSmallCloths> m_solveSmall;
+    BoundKernel<kernels::sweepLeaves> m_sweepLeaves;
+    BoundKernel<kernels::sweepGroups> m_sweepGroups;
+    BoundKernel<kernels::passNodes> m_passNodes;
     Buffer<SolveInputWord> m_input{"solver input"};
     Buffer<SolveTopologyWord> m_topology{"solver topology"};
     Buffer<Contact> m_contacts{"solver contacts"};
     Buffer<SolveWorkWord> m_work{"solver memory"};
     std::unique_ptr<Staging<SolveInputWord>> m_inputWritten = std::make_unique<Staging<SolveInputWord>>();
     std::unique_ptr<Staging<SolveWorkWord>> m_resultRead = std::make_unique<Staging<SolveWorkWord>>();
+    Contact m_head = {};  // of the uploaded contacts
 };
 }  // namespace drape

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "kernels/lib/closing_sweeps.h"
 #include "rigid_rows.h"
 
 namespace drape
@@ -31,8 +32,9 @@ bool isViolated(const ContactSweep* sweep, float share)
 // Returns whether the cloth needs another closing sweep after `done` sweeps.
 bool isOpen(const ContactSweep* sweep, int done)
 {
-    if (done < kClosingSweeps) return isViolated(sweep, kClosingTolerance);
-    return done < mostClosingSweeps(SweepTeam::blockCount(*sweep)) && isViolated(sweep, kMostViolation);
+    const float thickness = sweep->contacts().m_leastThickness;
+    return needsClosing(std::uint32_t(done), std::uint32_t(SweepTeam::blockCount(*sweep)), SweepTeam::worst(*sweep),
+                        kClosingTolerance * thickness, kMostViolation * thickness) != 0;
 }
 
 bool obstaclesRest(const ContactSweep* sweep)
@@ -307,8 +309,10 @@ std::size_t StepSolver::solve(const std::vector<SolverCloth>& cloths, const std:
     solveOnHost(m_onHost, m_freeOnHost, source);
     if (const SolveWorkWord* const result = stage->finish())
     {
-        m_packed.unpack(result);
-        return m_onDevice.size();
+        m_refused.clear();
+        m_packed.unpack(result, m_refused);
+        if (!m_refused.empty()) solveOnHost(m_refused, {}, source);
+        return m_onDevice.size() - m_refused.size();
     }
     solveOnHost(m_onDevice, {}, source);
     return 0;

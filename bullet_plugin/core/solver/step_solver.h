@@ -4,11 +4,11 @@
 // A cloth's links are the core's own, in substeps (substeps.h), or the caller's. Input: nodes at the ends of their
 // paths, and contacts along these. Output: displacements and velocities at the step's end.
 //
-// Guarantee: no contact ends violated by more than kClosingTolerance if kClosingSweeps sweeps suffice. Sweeps continue
+// Guarantee: no contact ends violated by more than kClosingTolerance if DRAPE_LEAST_CLOSING sweeps suffice. Sweeps continue
 // while a violation exceeds what the next step would recover. Results are the same bits with any number of threads.
 //
-// Cost: linear in the contacts; kContactSweeps per iteration or substep and up to kClosingSweeps after them, at most
-// kMostFurther more. Reasons: docs/design_notes/contact_sweeps.md.
+// Cost: linear in the contacts; kContactSweeps per iteration or substep, and closing sweeps after them
+// (kernels/lib/closing_sweeps.h). Reasons: docs/design_notes/contact_sweeps.md.
 #pragma once
 
 #include <algorithm>
@@ -28,27 +28,13 @@ namespace drape
 // nodes at rest end their steps at 8.7 mm/s (RMS) if all sweeps over the links come first. In turns it is 0.2 mm/s.
 constexpr int kContactSweeps = Substeps::kLinkSweeps;
 
-constexpr int kClosingSweeps = 8;
-
-// Budget of further sweeps, in contact blocks examined: a millisecond or two. A cloth with few contacts may take more
-// sweeps, between the minimum and the maximum below.
-constexpr std::size_t kFurtherBlocks = std::size_t(1) << 16;
-constexpr std::size_t kLeastFurther = 24, kMostFurther = 120;
-
 // Returns the number of sweeps over acting contacts after each sweep in turns with links, for so many substeps.
 inline int actingSweepsOf(int substeps)
 {
     return std::max(DRAPE_ACTING_SWEEPS, DRAPE_ACTING_IN_STEP / substeps);
 }
 
-// Returns the maximum number of closing sweeps over so many contact blocks.
-inline int mostClosingSweeps(std::size_t blocks)
-{
-    const std::size_t affordable = kFurtherBlocks / std::max<std::size_t>(1, blocks);
-    return kClosingSweeps + int(std::min(kMostFurther, std::max(kLeastFurther, affordable)));
-}
-
-// Worst violation that may remain, as a share of the thickness: before kClosingSweeps sweeps are done, and after. The
+// Worst violation that may remain, as a share of the thickness: before DRAPE_LEAST_CLOSING sweeps are done, and after. The
 // second is less than what the next step recovers, since later contacts of a sweep may increase a violation that was
 // measured earlier in it.
 constexpr float kClosingTolerance = 0.01f;
@@ -105,6 +91,6 @@ private:
     Cloths m_all, m_touching, m_iterating, m_turn, m_meeting, m_open, m_resting, m_others;
     std::vector<LinkedNodes> m_own;  // working memory of forSubsteps()
     PackedStep m_packed;
-    std::vector<SolverCloth> m_onDevice, m_onHost, m_freeOnHost;  // working memory of solve()
+    std::vector<SolverCloth> m_onDevice, m_onHost, m_freeOnHost, m_refused;  // working memory of solve()
 };
 }  // namespace drape

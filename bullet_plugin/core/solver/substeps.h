@@ -22,6 +22,7 @@ public:
     static constexpr int kLinkSweeps = 3;
 
     LinkSweep& links() { return m_links; }
+    const LinkSweep& links() const { return m_links; }
     int count() const { return m_count; }
     // Returns the time of a substep, s.
     float substepTime() const { return m_time / float(m_count); }

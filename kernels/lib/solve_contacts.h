@@ -1,0 +1,451 @@
+// Sweeps over the contacts of a group, bucket by bucket (core/solver/contact_group.h).
+//
+// The features of a bucket share no node, so work-items visit its contacts side by side, one contact each. The contacts
+// of one feature are projected in order: in each round the first one that is due.
+#ifndef DRAPE_LIB_SOLVE_CONTACTS_H
+#define DRAPE_LIB_SOLVE_CONTACTS_H
+
+#include "acting_contact.h"
+#include "rigid_motion.h"
+#include "solve_view.h"
+
+// A sweep over contacts: its stage, counted from 1, and where obstacles stand.
+typedef struct Sweep
+{
+    uint m_stage;
+    float m_passed;      // share of the step that has passed
+    float m_slack;       // m, bound on how far levels lie above those at the step's end
+    float m_relaxation;  // share of a violation that a projection corrects
+    uint m_round;        // see nextRound()
+    uint m_pending;      // the word that says whether a contact is due in this round
+    float m_worst;       // m, worst violation that the work-item met
+} Sweep;
+
+static void beginSweep(const Solve* solve, const uint substep, const int closes, Sweep* sweep)
+{
+    sweep->m_stage = substep + 1;
+    sweep->m_passed = closes ? 1.0f : (float)(substep + 1) / (float)solve->m_cloth->m_substeps;
+    sweep->m_slack = (1.0f - sweep->m_passed) * solve->m_cloth->m_retreat;
+    sweep->m_relaxation = closes ? 1.0f : DRAPE_TURN_RELAXATION;
+    sweep->m_worst = 0.0f;
+}
+
+// Begins sweeps in a substep. The rounds go on.
+static void beginSubstep(const Solve* solve, const uint substep, Sweep* sweep)
+{
+    beginSweep(solve, substep, 0, sweep);
+}
+
+// Begins a sweep that closes the contacts.
+static void beginClosing(const Solve* solve, Sweep* sweep)
+{
+    beginSweep(solve, solve->m_cloth->m_substeps, 1, sweep);
+}
+
+static SolveContact loadContact(const Solve* solve, const uint index)
+{
+    __global const float4* words = (__global const float4*)(solve->m_sorted + index);
+    const float4 first = words[0], second = words[1], third = words[2];
+    SolveContact contact;
+    contact.m_normal = xyz(first);
+    contact.m_level = first.w;
+    contact.m_weights[0] = second.x;
+    contact.m_weights[1] = second.y;
+    contact.m_flags = as_uint(second.z);
+    contact.m_pushing = as_uint(second.w);
+    contact.m_nodes[0] = as_uint(third.x);
+    contact.m_nodes[1] = as_uint(third.y);
+    contact.m_nodes[2] = as_uint(third.z);
+    contact.m_rank = as_uint(third.w);
+    return contact;
+}
+
+static ContactPlane foundPlane(__global const Contact* contact)
+{
+    ContactPlane plane;
+    plane.m_normal = vec3Load(contact->m_normal, 0);
+    plane.m_point = vec3Load(contact->m_point, 0);
+    for (int k = 0; k < 3; ++k)
+        plane.m_weights[k] = contact->m_weights[k];
+    return plane;
+}
+
+static uint firstOf(__global const MeshOffsets* mesh, const uint kind)
+{
+    if (kind == DRAPE_NODE_FACE) return mesh->m_triangle;
+    return kind == DRAPE_FACE_VERTEX ? mesh->m_vertex : mesh->m_edge;
+}
+
+// Returns the surface of a contact's obstacle.
+static __global const SolveSurface* surfaceOf(const Solve* solve, __global const Contact* contact)
+{
+    const SolveRange range = solve->m_cloth->m_surfaces;
+    __global const SolveSurface* first = solve->m_surfaces + range.m_first;
+    if (range.m_count == 1) return first;
+    // The last obstacle that begins with the feature or before it. Obstacles without such features begin where the next
+    // one does.
+    uint low = 0, high = solve->m_obstacleCount;
+    while (high - low > 1)
+    {
+        const uint middle = (low + high) / 2;
+        if (firstOf(solve->m_obstacles + middle, contact->m_kind) <= contact->m_obstacleFeature)
+            low = middle;
+        else
+            high = middle;
+    }
+    uint least = 0, most = range.m_count;
+    while (most - least > 1)
+    {
+        const uint middle = (least + most) / 2;
+        if (first[middle].m_obstacle <= low)
+            least = middle;
+        else
+            most = middle;
+    }
+    return first + least;
+}
+
+static Vec3 carriedStart(__global const SolveSurface* surface, const Vec3 start)
+{
+    return surface->m_moves ? mapPoint(surface->m_map, start) : start;
+}
+
+static FeatureNodes featureNodes(const Solve* solve, const SolveContact* contact, __global const SolveSurface* surface)
+{
+    FeatureNodes nodes;
+    nodes.m_count = DRAPE_CONTACT_COUNT(contact->m_flags);
+    nodes.m_moves = surface->m_moves;
+    for (uint k = 0; k < 3; ++k)
+    {
+        __global const NodePath* path = solve->m_paths + contact->m_nodes[k];
+        nodes.m_nodes[k] = contact->m_nodes[k];
+        nodes.m_starts[k] = path->m_start;
+        nodes.m_carried[k] = carriedStart(surface, path->m_start);
+        nodes.m_ends[k] = vec3Add(path->m_start, path->m_way);
+        nodes.m_inverseMasses[k] = path->m_inverseMass;
+    }
+    return nodes;
+}
+
+// The nodes' displacements of a feature; entries beyond the last node repeat the first.
+typedef struct Displacements
+{
+    Vec3 m_nodes[3];
+} Displacements;
+
+static Displacements displacementsOf(const Solve* solve, const SolveContact* contact)
+{
+    Displacements at;
+    for (int k = 0; k < 3; ++k)
+        at.m_nodes[k] = loadNode(solve, contact->m_nodes[k]).m_displacement;
+    return at;
+}
+
+// Returns an upper bound of a contact's violation once the obstacle stands at the step's end, m.
+static float excessOf(const SolveContact* contact, const Displacements* at)
+{
+    const Vec3 first = at->m_nodes[0];
+    const Vec3 second = vec3Scale(vec3Sub(at->m_nodes[1], first), contact->m_weights[0]);
+    const Vec3 third = vec3Scale(vec3Sub(at->m_nodes[2], first), contact->m_weights[1]);
+    return contact->m_level - vec3Dot(contact->m_normal, vec3Add(first, vec3Add(second, third)));
+}
+
+// Makes the row of a contact.
+DRAPE_RARE_FUNCTION void makeActing(const Solve* solve, const uint index, const SolveContact* contact)
+{
+    __global const Contact* found = solve->m_contacts + solve->m_order[index];
+    __global const SolveSurface* surface = surfaceOf(solve, found);
+    const FeatureNodes nodes = featureNodes(solve, contact, surface);
+    const ContactPlane plane = foundPlane(found);
+    ContactSettings settings;
+    settings.m_thickness = surface->m_thickness;
+    settings.m_friction = surface->m_friction;
+    settings.m_hardness = solve->m_cloth->m_hardness;
+    settings.m_perSecond = solve->m_cloth->m_perSecond;
+    solve->m_acting[index] = actingContact(&nodes, &plane, &settings, contactGaps(&nodes, &plane, &settings));
+    solve->m_sorted[index].m_flags = contact->m_flags | DRAPE_CONTACT_MADE;
+}
+
+// Renews the plane of a contact that turns.
+DRAPE_RARE_FUNCTION void renew(const Solve* solve, const uint index, const SolveContact* contact, const uint stage,
+                               const float passed)
+{
+    ActingContact acting = solve->m_acting[index];
+    __global const Contact* found = solve->m_contacts + solve->m_order[index];
+    const FeatureNodes nodes = featureNodes(solve, contact, surfaceOf(solve, found));
+    const Displacements at = displacementsOf(solve, contact);
+    const ContactPlane before = foundPlane(found);
+    ContactPlane plane;
+    acting.m_stage = stage;
+    const int turned = renewPlane(&acting, &nodes, at.m_nodes, passed, &before, &plane);
+    solve->m_acting[index] = acting;
+    if (!turned) return;
+    __global SolveContact* bound = solve->m_sorted + index;
+    bound->m_normal = plane.m_normal;
+    bound->m_level = acting.m_row.m_level + solve->m_cloth->m_margin;
+    bound->m_weights[0] = plane.m_weights[1];
+    bound->m_weights[1] = plane.m_weights[2];
+}
+
+// Loads what pushes need of a contact, as vectors: all but the nodes.
+static ActingContact loadActing(const Solve* solve, const uint index)
+{
+    __global const float4* words = (__global const float4*)(solve->m_acting + index);
+    const float4 normal = words[0], carried = words[1], held = words[2], weights = words[3], shares = words[4];
+    const float4 rest = words[6];
+    ActingContact acting;
+    acting.m_row.m_normal = xyz(normal);
+    acting.m_row.m_level = normal.w;
+    acting.m_row.m_carried = xyz(carried);
+    acting.m_row.m_advance = carried.w;
+    acting.m_row.m_held = xyz(held);
+    acting.m_row.m_multiplier = held.w;
+    acting.m_row.m_weights[0] = weights.x;
+    acting.m_row.m_weights[1] = weights.y;
+    acting.m_row.m_weights[2] = weights.z;
+    acting.m_row.m_friction = weights.w;
+    acting.m_row.m_shares[0] = shares.x;
+    acting.m_row.m_shares[1] = shares.y;
+    acting.m_row.m_shares[2] = shares.z;
+    acting.m_row.m_inverseMobility = shares.w;
+    acting.m_row.m_mended = rest.x;
+    acting.m_stage = as_uint(rest.w);
+    return acting;
+}
+
+static Vec3 rowWay(const ActingContact* acting, const uint count, const Displacements* at)
+{
+    Vec3 way = vec3Scale(at->m_nodes[0], acting->m_row.m_weights[0]);
+    if (count > 1) way = vec3AddScaled(way, at->m_nodes[1], acting->m_row.m_weights[1]);
+    if (count > 2) way = vec3AddScaled(way, at->m_nodes[2], acting->m_row.m_weights[2]);
+    return way;
+}
+
+static void shiftNode(const Solve* solve, const uint node, const Vec3 displacement)
+{
+    // The inverse mass beside it stays.
+    nodeAt(solve, node)->m_displacement = displacement;
+    solve->m_states[node].m_shifted = 1;
+}
+
+// Projects a contact that is violated or pushes. turns: whether its plane may be renewed. Returns whether it pushed.
+static int projectContact(const Solve* solve, const uint index, const SolveContact* contact, Sweep* sweep,
+                          const int turns)
+{
+    const uint count = DRAPE_CONTACT_COUNT(contact->m_flags);
+    if (!(contact->m_flags & DRAPE_CONTACT_MADE)) makeActing(solve, index, contact);
+    ActingContact acting = loadActing(solve, index);
+    if (!(acting.m_row.m_inverseMobility > 0.0f)) return 0;
+    Displacements at = displacementsOf(solve, contact);
+    Vec3 way = rowWay(&acting, count, &at);
+    if (turns && (contact->m_flags & DRAPE_CONTACT_TURNS) && acting.m_stage != sweep->m_stage &&
+        acting.m_row.m_level - (1.0f - sweep->m_passed) * acting.m_row.m_advance - vec3Dot(acting.m_row.m_normal, way) >
+            0.0f)
+    {
+        renew(solve, index, contact, sweep->m_stage, sweep->m_passed);
+        acting = loadActing(solve, index);
+        way = rowWay(&acting, count, &at);
+        if (!(acting.m_row.m_inverseMobility > 0.0f)) return 0;
+    }
+    if (contact->m_pushing != sweep->m_stage)
+    {
+        acting.m_row.m_multiplier = 0.0f;
+        acting.m_row.m_held = vec3(0.0f, 0.0f, 0.0f);
+    }
+    Vec3 shift;
+    if (!pushRow(&acting.m_row, way, sweep->m_passed, sweep->m_relaxation, &sweep->m_worst, &shift)) return 0;
+    const Vec3 held = acting.m_row.m_held;
+    ((__global float4*)(solve->m_acting + index))[2] = (float4)(held.x, held.y, held.z, acting.m_row.m_multiplier);
+    solve->m_acting[index].m_pushed = 1;
+    solve->m_sorted[index].m_pushing = sweep->m_stage;
+    for (uint k = 0; k < count; ++k)
+        shiftNode(solve, contact->m_nodes[k], vec3AddScaled(at.m_nodes[k], shift, acting.m_row.m_shares[k]));
+    return 1;
+}
+
+// Returns whether the contact is violated or pushes.
+static int isDue(const Solve* solve, const SolveContact* contact, const Sweep* sweep)
+{
+    if (contact->m_pushing == sweep->m_stage) return 1;
+    const Displacements at = displacementsOf(solve, contact);
+    return excessOf(contact, &at) + sweep->m_slack > 0.0f;
+}
+
+// Marks order the contacts of a feature within a round: the mark at its first node is the least of the round's tag and
+// a contact's rank. Tags fall from round to round, so that marks of earlier rounds do not count.
+#define DRAPE_NO_MARK 0xffffffffu
+#define DRAPE_MOST_ROUNDS 0xf000u
+#define DRAPE_ROUND_TAG(round) ((0xffffu - (round)) << 16)
+
+static void resetMarks(const Solve* solve, Sweep* sweep)
+{
+    __global const SolveGroup* group = solve->m_group;
+    syncNodes();
+#ifdef DRAPE_GLOBAL_NODES
+    const uint last = group->m_firstBucket + group->m_nodeBuckets + group->m_faceBuckets + group->m_edgeBuckets;
+    for (uint b = group->m_firstBucket; b < last; ++b)
+    {
+        const SolveBucket bucket = solve->m_buckets[b];
+        forAll(i, bucket.m_first, bucket.m_first + bucket.m_count)
+            solve->m_marks[solve->m_sorted[i].m_nodes[0]] = DRAPE_NO_MARK;
+    }
+#else
+    forAll(i, 0, group->m_nodes.m_count) solve->m_marks[i] = DRAPE_NO_MARK;
+#endif
+    if (get_local_id(0) == 0)
+        for (int i = 0; i < 3; ++i)
+            solve->m_shared[DRAPE_SHARED_PENDING + i] = 0;
+    sweep->m_round = sweep->m_pending = 0;
+    syncNodes();
+}
+
+// Returns whether any of the group's contacts is due in this round. Three words take turns, so that one barrier is
+// enough.
+static int anyPending(const Solve* solve, Sweep* sweep)
+{
+    const int any = solve->m_shared[DRAPE_SHARED_PENDING + sweep->m_pending] != 0;
+    if (get_local_id(0) == 0) solve->m_shared[DRAPE_SHARED_PENDING + (sweep->m_pending + 2) % 3] = 0;
+    sweep->m_pending = (sweep->m_pending + 1) % 3;
+    return any;
+}
+
+// Visits contacts side by side, one for each work-item: all that are due, or those that act in this stage. Returns
+// whether the work-item's contact pushed.
+static int visitSideBySide(const Solve* solve, const uint index, const int exists, Sweep* sweep, const int acting)
+{
+    SolveContact contact;
+    int isOpen = exists, pushed = 0;
+    if (isOpen)
+    {
+        contact = loadContact(solve, index);
+        if (acting && contact.m_pushing != sweep->m_stage) isOpen = 0;
+    }
+    for (;;)
+    {
+        const uint tag = DRAPE_ROUND_TAG(sweep->m_round);
+        if (isOpen && (acting || isDue(solve, &contact, sweep)))
+        {
+            atomic_min(solve->m_marks + (contact.m_nodes[0] - solve->m_base), tag | contact.m_rank);
+            solve->m_shared[DRAPE_SHARED_PENDING + sweep->m_pending] = 1;
+        }
+        syncNodes();
+        ++sweep->m_round;
+        if (!anyPending(solve, sweep)) return pushed;
+        if (isOpen)
+        {
+            const uint mark = solve->m_marks[contact.m_nodes[0] - solve->m_base];
+            if ((mark & 0xffff0000u) == tag && contact.m_rank <= (mark & 0xffffu))
+            {
+                if (contact.m_rank == (mark & 0xffffu))
+                    pushed = projectContact(solve, index, &contact, sweep, !acting);
+                isOpen = 0;
+            }
+        }
+        syncNodes();
+    }
+}
+
+// Visits contacts one after the other.
+static int visitInOrder(const Solve* solve, const uint first, const uint last, Sweep* sweep, const int acting)
+{
+    int pushed = 0;
+    for (uint i = first; i < last; ++i)
+    {
+        const SolveContact contact = loadContact(solve, i);
+        if (acting ? contact.m_pushing == sweep->m_stage : isDue(solve, &contact, sweep))
+            pushed |= projectContact(solve, i, &contact, sweep, !acting);
+    }
+    return pushed;
+}
+
+// Returns the word that records the pushes of a bucket; null for one beyond those recorded.
+static __local uint* pushedRecord(const Solve* solve, const uint bucket)
+{
+    const uint index = bucket - solve->m_group->m_firstBucket;
+    return index < DRAPE_RECORDED_BUCKETS ? solve->m_shared + DRAPE_SHARED_PUSHED + index : 0;
+}
+
+DRAPE_RARE_FUNCTION void sweepBucket(const Solve* solve, const uint index, Sweep* sweep, const int acting)
+{
+    __local uint* record = pushedRecord(solve, index);
+    if (acting && record && *record != sweep->m_stage) return;
+    const uint first = solve->m_buckets[index].m_first, last = first + solve->m_buckets[index].m_count;
+    if (first == last) return;
+    int pushed = 0;
+#ifdef DRAPE_CPU
+    pushed = visitInOrder(solve, first, last, sweep, acting);
+#else
+    for (uint start = first; start < last; start += get_local_size(0))
+    {
+        if (sweep->m_round > DRAPE_MOST_ROUNDS) resetMarks(solve, sweep);
+        pushed |= visitSideBySide(solve, start + get_local_id(0), start + get_local_id(0) < last, sweep, acting);
+    }
+#endif
+    if (pushed && record) *record = sweep->m_stage;
+}
+
+static void sweepBuckets(const Solve* solve, const uint first, const uint count, Sweep* sweep, const int acting)
+{
+    for (uint i = first; i < first + count; ++i)
+        sweepBucket(solve, i, sweep, acting);
+}
+
+static void sweepNodes(const Solve* solve, Sweep* sweep)
+{
+    sweepBuckets(solve, solve->m_group->m_firstBucket, solve->m_group->m_nodeBuckets, sweep, 0);
+}
+
+static void sweepFaces(const Solve* solve, Sweep* sweep)
+{
+    const uint count = solve->m_group->m_nodeBuckets + solve->m_group->m_faceBuckets;
+    sweepBuckets(solve, solve->m_group->m_firstBucket, count, sweep, 0);
+}
+
+// Sweeps over the edges' contacts, then `acting` times over the group's contacts that act.
+static void sweepEdges(const Solve* solve, Sweep* sweep, const uint acting)
+{
+    __global const SolveGroup* group = solve->m_group;
+    const uint others = group->m_nodeBuckets + group->m_faceBuckets;
+    sweepBuckets(solve, group->m_firstBucket + others, group->m_edgeBuckets, sweep, 0);
+    const float worst = sweep->m_worst;
+    if (acting > 0) syncNodes();  // the record of pushes
+    for (uint i = 0; i < acting; ++i)
+        sweepBuckets(solve, group->m_firstBucket, others + group->m_edgeBuckets, sweep, 1);
+    sweep->m_worst = worst;
+}
+
+// Limits the speeds that contacts of a feature gave. Returns whether one of them ends so near that a surface may have
+// been passed.
+static int limitFeature(const Solve* solve, const uint first, const uint last)
+{
+    int near = 0;
+    for (uint i = first; i < last && (i == first || solve->m_sorted[i].m_rank != 0); ++i)
+    {
+        if (!(solve->m_sorted[i].m_flags & DRAPE_CONTACT_MADE)) continue;
+        const ActingContact acting = solve->m_acting[i];
+        if (!acting.m_pushed) continue;
+        limitSpeed(&acting, solve->m_states);
+        near |= acting.m_distance - rowViolation(&acting.m_row, solve->m_nodes, 1.0f) < solve->m_cloth->m_nearDistance;
+    }
+    return near;
+}
+
+// Limits the speeds that contacts of the group gave: of nodes and faces, or of edges. Only for nodes from the cloth's
+// first on. Returns whether one of the work-item's ends near.
+DRAPE_RARE_FUNCTION int limitSpeeds(const Solve* solve, const int edges)
+{
+    __global const SolveGroup* group = solve->m_group;
+    const uint others = group->m_nodeBuckets + group->m_faceBuckets;
+    const uint first = group->m_firstBucket + (edges ? others : 0), count = edges ? group->m_edgeBuckets : others;
+    int near = 0;
+    for (uint b = first; b < first + count; ++b)
+    {
+        const SolveBucket bucket = solve->m_buckets[b];
+        forAll(i, bucket.m_first, bucket.m_first + bucket.m_count)
+            if (solve->m_sorted[i].m_rank == 0) near |= limitFeature(solve, i, bucket.m_first + bucket.m_count);
+        syncAll();
+    }
+    return near;
+}
+
+#endif

@@ -1,0 +1,131 @@
+// Sorts a step's contacts into the buckets of their groups, kinds and colours, as sweeps visit them, and begins their
+// bounding planes. Also sorts the nodes' paths by the leaves of their cloths.
+//
+// The contacts of a feature stay adjacent and in their order. Where a feature's contacts are in their bucket depends on
+// the order of work-items, and no result depends on it.
+#define DRAPE_NODE_SPACE __global
+#include "../lib/closing_sweeps.h"
+#include "../lib/vec3.h"
+#include "solver_bindings.h"
+
+// Maximum contacts of a feature, see DRAPE_ROUND_TAG().
+#define DRAPE_MOST_RANKS 0xffffu
+
+static uint contactCount(__global const Contact* contacts)
+{
+    return ((__global const StepCounters*)contacts)->m_contactsStored;
+}
+
+// Returns the number of contacts of the feature whose contacts begin at the index; 0 if none do.
+static uint runAt(__global const Contact* contacts, const uint index, const uint count)
+{
+    __global const Contact* first = contacts + DRAPE_CONTACT_HEAD + index;
+    if (index > 0 && first[-1].m_slot == first->m_slot) return 0;
+    uint run = 1;
+    while (index + run < count && first[run].m_slot == first->m_slot)
+        ++run;
+    return run;
+}
+
+__kernel void takePaths(DRAPE_ORDER_CONTACTS)
+{
+    __global const NodePath* given = (__global const NodePath*)(input + layout.m_givenPaths);
+    __global const Vec3* accelerations = (__global const Vec3*)(input + layout.m_givenAccelerations);
+    __global const uint* places = (__global const uint*)(topology + layout.m_places);
+    for (uint i = get_global_id(0); i < layout.m_nodeCount; i += get_global_size(0))
+    {
+        ((__global NodePath*)(work + layout.m_paths))[i] = given[places[i]];
+        ((__global Vec3*)(work + layout.m_accelerations))[i] = accelerations[places[i]];
+    }
+}
+
+__kernel void countContacts(DRAPE_ORDER_CONTACTS)
+{
+    __global const SolveSlot* slots = (__global const SolveSlot*)(topology + layout.m_slots);
+    __global const uint* cloths = (__global const uint*)(topology + layout.m_bucketCloths);
+    __global SolveBucket* buckets = (__global SolveBucket*)(work + layout.m_buckets);
+    __global SolveProgress* progress = (__global SolveProgress*)(work + layout.m_progress);
+    const uint count = contactCount(contacts);
+    for (uint i = get_global_id(0); i < count; i += get_global_size(0))
+    {
+        const uint bucket = slots[contacts[DRAPE_CONTACT_HEAD + i].m_slot].m_bucket;
+        const uint run = bucket == DRAPE_NO_BUCKET ? 0 : runAt(contacts, i, count);
+        if (run == 0) continue;
+        atomic_add(&buckets[bucket].m_count, run);
+        atomic_add(&progress[cloths[bucket]].m_blocks, (run + DRAPE_BLOCK_CONTACTS - 1) / DRAPE_BLOCK_CONTACTS);
+        if (run > DRAPE_MOST_RANKS) progress[cloths[bucket]].m_refused = 1;
+    }
+}
+
+__kernel void placeBuckets(DRAPE_ORDER_CONTACTS)
+{
+    __global SolveBucket* buckets = (__global SolveBucket*)(work + layout.m_buckets);
+    for (uint i = get_global_id(0); i < layout.m_bucketCount; i += get_global_size(0))
+        if (buckets[i].m_count > 0)
+            buckets[i].m_first = atomic_add((__global uint*)(work + layout.m_total), buckets[i].m_count);
+}
+
+__kernel void gatherContacts(DRAPE_ORDER_CONTACTS)
+{
+    __global const SolveSlot* slots = (__global const SolveSlot*)(topology + layout.m_slots);
+    __global SolveBucket* buckets = (__global SolveBucket*)(work + layout.m_buckets);
+    __global SolveContact* sorted = (__global SolveContact*)(work + layout.m_sorted);
+    __global uint* order = (__global uint*)(work + layout.m_order);
+    const uint count = contactCount(contacts);
+    for (uint i = get_global_id(0); i < count; i += get_global_size(0))
+    {
+        const uint bucket = slots[contacts[DRAPE_CONTACT_HEAD + i].m_slot].m_bucket;
+        const uint run = bucket == DRAPE_NO_BUCKET ? 0 : runAt(contacts, i, count);
+        if (run == 0) continue;
+        const uint first = buckets[bucket].m_first + atomic_add(&buckets[bucket].m_filled, run);
+        for (uint rank = 0; rank < run; ++rank)
+        {
+            order[first + rank] = i + rank;
+            sorted[first + rank].m_rank = rank;
+        }
+    }
+}
+
+// Sets the bounding planes, and marks the nodes with contacts.
+__kernel void prepareContacts(DRAPE_ORDER_CONTACTS)
+{
+    __global const SolveSlot* slots = (__global const SolveSlot*)(topology + layout.m_slots);
+    __global const uint* cloths = (__global const uint*)(topology + layout.m_bucketCloths);
+    __global SolveContact* sorted = (__global SolveContact*)(work + layout.m_sorted);
+    __global const uint* order = (__global const uint*)(work + layout.m_order);
+    const uint total = *(__global const uint*)(work + layout.m_total);
+    for (uint i = get_global_id(0); i < total; i += get_global_size(0))
+    {
+        __global const Contact* found = contacts + DRAPE_CONTACT_HEAD + order[i];
+        const SolveSlot slot = slots[found->m_slot];
+        __global const SolveCloth* cloth =
+            (__global const SolveCloth*)(input + layout.m_cloths) + cloths[slot.m_bucket];
+        __global const NodePath* paths = (__global const NodePath*)(work + layout.m_paths) + cloth->m_nodes.m_first;
+        __global SolveAllowance* allowances =
+            (__global SolveAllowance*)(work + layout.m_allowances) + cloth->m_nodes.m_first;
+        SolveContact contact;
+        contact.m_normal = vec3Load(found->m_normal, 0);
+        const Vec3 first = paths[slot.m_nodes[0]].m_start;
+        Vec3 start = first;
+        uint count = 0;
+        for (uint k = 0; k < 3; ++k)
+        {
+            const int isUsed = slot.m_nodes[k] != DRAPE_NO_NODE;
+            contact.m_nodes[k] = isUsed ? slot.m_nodes[k] : slot.m_nodes[0];
+            if (!isUsed) continue;
+            ++count;
+            allowances[slot.m_nodes[k]].m_hasContact = 1;
+            if (k > 0)
+                start = vec3AddScaled(start, vec3Sub(paths[slot.m_nodes[k]].m_start, first), found->m_weights[k]);
+        }
+        const Vec3 apart = vec3Sub(vec3Load(found->m_point, 0), start);
+        contact.m_level = cloth->m_mostThickness + vec3Dot(contact.m_normal, apart) + cloth->m_margin;
+        contact.m_weights[0] = found->m_weights[1];
+        contact.m_weights[1] = found->m_weights[2];
+        const int turns = found->m_kind == DRAPE_FACE_VERTEX && !(found->m_time < 1.0f);
+        contact.m_flags = (turns ? DRAPE_CONTACT_TURNS : 0u) | count << 8;
+        contact.m_pushing = 0;
+        contact.m_rank = sorted[i].m_rank;
+        sorted[i] = contact;
+    }
+}
