@@ -221,46 +221,66 @@ static Vec3 rowWay(const ActingContact* acting, const uint count, const Displace
     return way;
 }
 
-static void shiftNode(const Solve* solve, const uint node, const Vec3 displacement)
+// Loads the row of a contact. Its pushes begin anew in each stage.
+static ActingContact loadRow(const Solve* solve, const uint index, const SolveContact* contact, const uint stage)
 {
-    // The inverse mass beside it stays.
-    nodeAt(solve, node)->m_displacement = displacement;
-    solve->m_states[node].m_shifted = 1;
-}
-
-// Projects a contact that is violated or pushes. turns: whether its plane may be renewed. Returns whether it pushed.
-static int projectContact(const Solve* solve, const uint index, const SolveContact* contact, Sweep* sweep,
-                          const int turns)
-{
-    const uint count = DRAPE_CONTACT_COUNT(contact->m_flags);
-    if (!(contact->m_flags & DRAPE_CONTACT_MADE)) makeActing(solve, index, contact);
     ActingContact acting = loadActing(solve, index);
-    if (!(acting.m_row.m_inverseMobility > 0.0f)) return 0;
-    Displacements at = displacementsOf(solve, contact);
-    Vec3 way = rowWay(&acting, count, &at);
-    if (turns && (contact->m_flags & DRAPE_CONTACT_TURNS) && acting.m_stage != sweep->m_stage &&
-        acting.m_row.m_level - (1.0f - sweep->m_passed) * acting.m_row.m_advance - vec3Dot(acting.m_row.m_normal, way) >
-            0.0f)
-    {
-        renew(solve, index, contact, sweep->m_stage, sweep->m_passed);
-        acting = loadActing(solve, index);
-        way = rowWay(&acting, count, &at);
-        if (!(acting.m_row.m_inverseMobility > 0.0f)) return 0;
-    }
-    if (contact->m_pushing != sweep->m_stage)
+    if (contact->m_pushing != stage)
     {
         acting.m_row.m_multiplier = 0.0f;
         acting.m_row.m_held = vec3(0.0f, 0.0f, 0.0f);
     }
+    return acting;
+}
+
+// Makes the row of a contact if it has none, and loads it.
+static ActingContact openRow(const Solve* solve, const uint index, const SolveContact* contact, const uint stage)
+{
+    if (!(contact->m_flags & DRAPE_CONTACT_MADE)) makeActing(solve, index, contact);
+    return loadRow(solve, index, contact, stage);
+}
+
+// Pushes the nodes of a contact with an open row. Returns whether there was anything to do.
+static int pushContact(const Solve* solve, const uint index, const SolveContact* contact, ActingContact* acting,
+                       Sweep* sweep)
+{
+    const uint count = DRAPE_CONTACT_COUNT(contact->m_flags);
+    const Displacements at = displacementsOf(solve, contact);
     Vec3 shift;
-    if (!pushRow(&acting.m_row, way, sweep->m_passed, sweep->m_relaxation, &sweep->m_worst, &shift)) return 0;
-    const Vec3 held = acting.m_row.m_held;
-    ((__global float4*)(solve->m_acting + index))[2] = (float4)(held.x, held.y, held.z, acting.m_row.m_multiplier);
+    if (!pushRow(&acting->m_row, rowWay(acting, count, &at), sweep->m_passed, sweep->m_relaxation, &sweep->m_worst,
+                 &shift))
+        return 0;
+    const Vec3 held = acting->m_row.m_held;
+    ((__global float4*)(solve->m_acting + index))[2] = (float4)(held.x, held.y, held.z, acting->m_row.m_multiplier);
+    for (uint k = 0; k < count; ++k)
+        nodeAt(solve, contact->m_nodes[k])->m_displacement =
+            vec3AddScaled(at.m_nodes[k], shift, acting->m_row.m_shares[k]);  // the inverse mass beside it stays
+    if (contact->m_pushing == sweep->m_stage) return 1;
+    for (uint k = 0; k < count; ++k)
+        solve->m_states[contact->m_nodes[k]].m_shifted = 1;
     solve->m_acting[index].m_pushed = 1;
     solve->m_sorted[index].m_pushing = sweep->m_stage;
-    for (uint k = 0; k < count; ++k)
-        shiftNode(solve, contact->m_nodes[k], vec3AddScaled(at.m_nodes[k], shift, acting.m_row.m_shares[k]));
     return 1;
+}
+
+// Projects a contact that is violated or pushes, with an open row. Returns whether it pushed.
+static int projectContact(const Solve* solve, const uint index, const SolveContact* contact, ActingContact* acting,
+                          Sweep* sweep)
+{
+    if (!(acting->m_row.m_inverseMobility > 0.0f)) return 0;
+    if ((contact->m_flags & DRAPE_CONTACT_TURNS) && acting->m_stage != sweep->m_stage)
+    {
+        const Displacements at = displacementsOf(solve, contact);
+        const Vec3 way = rowWay(acting, DRAPE_CONTACT_COUNT(contact->m_flags), &at);
+        const float level = acting->m_row.m_level - (1.0f - sweep->m_passed) * acting->m_row.m_advance;
+        if (level - vec3Dot(acting->m_row.m_normal, way) > 0.0f)
+        {
+            renew(solve, index, contact, sweep->m_stage, sweep->m_passed);
+            *acting = loadRow(solve, index, contact, sweep->m_stage);
+            if (!(acting->m_row.m_inverseMobility > 0.0f)) return 0;
+        }
+    }
+    return pushContact(solve, index, contact, acting, sweep);
 }
 
 // Returns whether the contact is violated or pushes.
@@ -309,96 +329,145 @@ static int anyPending(const Solve* solve, Sweep* sweep)
     return any;
 }
 
-// Visits contacts side by side, one for each work-item: all that are due, or those that act in this stage. Returns
-// whether the work-item's contact pushed.
-static int visitSideBySide(const Solve* solve, const uint index, const int exists, Sweep* sweep, const int acting)
+// Visits contacts side by side, one for each work-item. A contact that acts remembers how many of its feature came
+// before it. Returns how many rounds actSideBySide() needs for the work-item's contact, 0 if it does not act.
+static uint visitSideBySide(const Solve* solve, const uint index, const int exists, Sweep* sweep)
 {
     SolveContact contact;
-    int isOpen = exists, pushed = 0;
+    ActingContact acting;
+    uint before = 0, rounds = 0;
+    int isOpen = exists, hasRow = 0;
+    contact.m_rank = 0;
     if (isOpen)
     {
         contact = loadContact(solve, index);
-        if (acting && contact.m_pushing != sweep->m_stage) isOpen = 0;
+        hasRow = contact.m_pushing == sweep->m_stage;
+        if (hasRow) acting = loadActing(solve, index);
     }
     for (;;)
     {
         const uint tag = DRAPE_ROUND_TAG(sweep->m_round);
-        if (isOpen && (acting || isDue(solve, &contact, sweep)))
+        const uint rank = contact.m_rank & 0xffffu;
+        if (isOpen && (hasRow || isDue(solve, &contact, sweep)))
         {
-            atomic_min(solve->m_marks + (contact.m_nodes[0] - solve->m_base), tag | contact.m_rank);
+            atomic_min(solve->m_marks + (contact.m_nodes[0] - solve->m_base), tag | rank);
             solve->m_shared[DRAPE_SHARED_PENDING + sweep->m_pending] = 1;
         }
         syncNodes();
         ++sweep->m_round;
-        if (!anyPending(solve, sweep)) return pushed;
+        if (!anyPending(solve, sweep)) return rounds;
         if (isOpen)
         {
             const uint mark = solve->m_marks[contact.m_nodes[0] - solve->m_base];
-            if ((mark & 0xffff0000u) == tag && contact.m_rank <= (mark & 0xffffu))
+            if ((mark & 0xffff0000u) == tag)
             {
-                if (contact.m_rank == (mark & 0xffffu))
-                    pushed = projectContact(solve, index, &contact, sweep, !acting);
-                isOpen = 0;
+                if (rank == (mark & 0xffffu))
+                {
+                    if (!hasRow) acting = openRow(solve, index, &contact, sweep->m_stage);
+                    if (projectContact(solve, index, &contact, &acting, sweep) || hasRow)
+                    {
+                        rounds = before + 1;
+                        if (contact.m_rank >> 16 != before) solve->m_sorted[index].m_rank = rank | before << 16;
+                    }
+                }
+                if (rank <= (mark & 0xffffu)) isOpen = 0;
+                ++before;
             }
         }
         syncNodes();
     }
 }
 
-// Visits contacts one after the other.
-static int visitInOrder(const Solve* solve, const uint first, const uint last, Sweep* sweep, const int acting)
+// Visits the contacts that act in this stage side by side, in so many rounds.
+static void actSideBySide(const Solve* solve, const uint index, const int exists, Sweep* sweep, const uint rounds)
 {
-    int pushed = 0;
+    SolveContact contact;
+    ActingContact acting;
+    uint round = rounds;
+    if (exists)
+    {
+        contact = loadContact(solve, index);
+        if (contact.m_pushing == sweep->m_stage)
+        {
+            acting = loadActing(solve, index);
+            if (acting.m_row.m_inverseMobility > 0.0f) round = contact.m_rank >> 16;
+        }
+    }
+    for (uint i = 0; i < rounds; ++i)
+    {
+        if (i == round) pushContact(solve, index, &contact, &acting, sweep);
+        syncNodes();
+    }
+}
+
+// Visits contacts one after the other: all, or those that act in this stage.
+static uint visitInOrder(const Solve* solve, const uint first, const uint last, Sweep* sweep, const int acts)
+{
+    uint pushed = 0;
     for (uint i = first; i < last; ++i)
     {
         const SolveContact contact = loadContact(solve, i);
-        if (acting ? contact.m_pushing == sweep->m_stage : isDue(solve, &contact, sweep))
-            pushed |= projectContact(solve, i, &contact, sweep, !acting);
+        if (acts ? contact.m_pushing != sweep->m_stage : !isDue(solve, &contact, sweep)) continue;
+        ActingContact acting = openRow(solve, i, &contact, sweep->m_stage);
+        pushed |= acts ? pushContact(solve, i, &contact, &acting, sweep)
+                       : projectContact(solve, i, &contact, &acting, sweep);
     }
     return pushed;
 }
 
-// Returns the word that records the pushes of a bucket; null for one beyond those recorded.
-static __local uint* pushedRecord(const Solve* solve, const uint bucket)
-{
-    const uint index = bucket - solve->m_group->m_firstBucket;
-    return index < DRAPE_RECORDED_BUCKETS ? solve->m_shared + DRAPE_SHARED_PUSHED + index : 0;
-}
+// The record of a bucket's pushes: the stage in which a contact pushed last, and the rounds that its acting contacts
+// need.
+#define DRAPE_PUSH_RECORD(stage, rounds) ((stage) << 16 | (rounds))
 
-DRAPE_RARE_FUNCTION void sweepBucket(const Solve* solve, const uint index, Sweep* sweep, const int acting)
+DRAPE_RARE_FUNCTION void sweepBucket(const Solve* solve, const uint index, Sweep* sweep)
 {
-    __local uint* record = pushedRecord(solve, index);
-    if (acting && record && *record != sweep->m_stage) return;
     const uint first = solve->m_buckets[index].m_first, last = first + solve->m_buckets[index].m_count;
     if (first == last) return;
-    int pushed = 0;
+    uint rounds = 0;
 #ifdef DRAPE_CPU
-    pushed = visitInOrder(solve, first, last, sweep, acting);
+    rounds = visitInOrder(solve, first, last, sweep, 0);
 #else
     for (uint start = first; start < last; start += get_local_size(0))
     {
         if (sweep->m_round > DRAPE_MOST_ROUNDS) resetMarks(solve, sweep);
-        pushed |= visitSideBySide(solve, start + get_local_id(0), start + get_local_id(0) < last, sweep, acting);
+        const uint own = visitSideBySide(solve, start + get_local_id(0), start + get_local_id(0) < last, sweep);
+        rounds = max(rounds, own);
     }
 #endif
-    if (pushed && record) *record = sweep->m_stage;
+    if (rounds > 0)
+        atomic_max(solve->m_shared + DRAPE_SHARED_PUSHED + (index - solve->m_group->m_firstBucket),
+                   DRAPE_PUSH_RECORD(sweep->m_stage, rounds));
 }
 
-static void sweepBuckets(const Solve* solve, const uint first, const uint count, Sweep* sweep, const int acting)
+// Visits the contacts of a bucket that act in this stage.
+DRAPE_RARE_FUNCTION void actInBucket(const Solve* solve, const uint index, Sweep* sweep)
+{
+    const uint record = solve->m_shared[DRAPE_SHARED_PUSHED + (index - solve->m_group->m_firstBucket)];
+    if (record >> 16 != sweep->m_stage) return;
+    const uint first = solve->m_buckets[index].m_first, last = first + solve->m_buckets[index].m_count;
+#ifdef DRAPE_CPU
+    visitInOrder(solve, first, last, sweep, 1);
+#else
+    for (uint start = first; start < last; start += get_local_size(0))
+        actSideBySide(solve, start + get_local_id(0), start + get_local_id(0) < last, sweep, record & 0xffffu);
+#endif
+}
+
+static void sweepBuckets(const Solve* solve, const uint first, const uint count, Sweep* sweep)
 {
     for (uint i = first; i < first + count; ++i)
-        sweepBucket(solve, i, sweep, acting);
+        sweepBucket(solve, i, sweep);
 }
 
 static void sweepNodes(const Solve* solve, Sweep* sweep)
 {
-    sweepBuckets(solve, solve->m_group->m_firstBucket, solve->m_group->m_nodeBuckets, sweep, 0);
+    sweepBuckets(solve, solve->m_group->m_firstBucket, solve->m_group->m_nodeBuckets, sweep);
 }
 
 static void sweepFaces(const Solve* solve, Sweep* sweep)
 {
     const uint count = solve->m_group->m_nodeBuckets + solve->m_group->m_faceBuckets;
-    sweepBuckets(solve, solve->m_group->m_firstBucket, count, sweep, 0);
+    sweepBuckets(solve, solve->m_group->m_firstBucket, count, sweep);
 }
 
 // Sweeps over the edges' contacts, then `acting` times over the group's contacts that act.
@@ -406,11 +475,12 @@ static void sweepEdges(const Solve* solve, Sweep* sweep, const uint acting)
 {
     __global const SolveGroup* group = solve->m_group;
     const uint others = group->m_nodeBuckets + group->m_faceBuckets;
-    sweepBuckets(solve, group->m_firstBucket + others, group->m_edgeBuckets, sweep, 0);
+    sweepBuckets(solve, group->m_firstBucket + others, group->m_edgeBuckets, sweep);
     const float worst = sweep->m_worst;
     if (acting > 0) syncNodes();  // the record of pushes
     for (uint i = 0; i < acting; ++i)
-        sweepBuckets(solve, group->m_firstBucket, others + group->m_edgeBuckets, sweep, 1);
+        for (uint bucket = 0; bucket < others + group->m_edgeBuckets; ++bucket)
+            actInBucket(solve, group->m_firstBucket + bucket, sweep);
     sweep->m_worst = worst;
 }
 

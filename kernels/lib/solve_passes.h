@@ -45,8 +45,7 @@ static void sweepPass(const Solve* solve, const SolvePass* pass, Sweep* sweep)
 {
     __global const SolveGroup* group = solve->m_group;
     const uint buckets = group->m_nodeBuckets + group->m_faceBuckets + group->m_edgeBuckets;
-    const uint recorded = buckets < DRAPE_RECORDED_BUCKETS ? buckets : DRAPE_RECORDED_BUCKETS;
-    forAll(i, 0, recorded) solve->m_shared[DRAPE_SHARED_PUSHED + i] =
+    forAll(i, 0, buckets) solve->m_shared[DRAPE_SHARED_PUSHED + i] =
         solve->m_buckets[group->m_firstBucket + i].m_pushed;
     syncNodes();
     const int closes = pass->m_substep == DRAPE_CLOSING;
@@ -58,7 +57,7 @@ static void sweepPass(const Solve* solve, const SolvePass* pass, Sweep* sweep)
     if (pass->m_pass == DRAPE_PASS_FACES) sweepFaces(solve, sweep);
     if (pass->m_pass == DRAPE_PASS_EDGES) sweepEdges(solve, sweep, closes ? 0 : solve->m_cloth->m_actingSweeps);
     syncNodes();
-    forAll(i, 0, recorded) solve->m_buckets[group->m_firstBucket + i].m_pushed =
+    forAll(i, 0, buckets) solve->m_buckets[group->m_firstBucket + i].m_pushed =
         solve->m_shared[DRAPE_SHARED_PUSHED + i];
     if (closes && pass->m_pass != DRAPE_PASS_NODES && sweep->m_worst > 0.0f)
         atomic_max((__global uint*)(solve->m_progress->m_worst + pass->m_sweep), as_uint(sweep->m_worst));

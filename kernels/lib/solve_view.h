@@ -38,12 +38,12 @@ typedef struct Solve
     __global SolveSpan* m_spans;
 } Solve;
 
-// Words of local memory that a group shares: one for sums, three for rounds, then by bucket of the group the stage in
-// which a contact pushed last. Buckets beyond count as pushing.
+// Words of local memory that a group shares: one for sums, three for rounds, then by bucket of the group a record of its
+// pushes. A group has a bucket for its nodes and two for each of 63 colours at most.
 #define DRAPE_SHARED_PENDING 1
 #define DRAPE_SHARED_PUSHED 4
-#define DRAPE_RECORDED_BUCKETS 252
-#define DRAPE_SHARED_WORDS (DRAPE_SHARED_PUSHED + DRAPE_RECORDED_BUCKETS)
+#define DRAPE_MOST_BUCKETS 127
+#define DRAPE_SHARED_WORDS (DRAPE_SHARED_PUSHED + DRAPE_MOST_BUCKETS)
 
 // The size of a kernel's work-groups, which is `gpu` on a GPU.
 #ifdef DRAPE_CPU

@@ -107,7 +107,7 @@ typedef struct SolveBucket
     DRAPE_UINT m_count;   // contacts
     DRAPE_UINT m_first;   // place of the first one
     DRAPE_UINT m_filled;  // contacts that have a place
-    DRAPE_UINT m_pushed;  // the stage in which one pushed last
+    DRAPE_UINT m_pushed;  // see DRAPE_PUSH_RECORD()
 } SolveBucket;
 
 typedef struct SolveLink
@@ -150,7 +150,7 @@ typedef struct SolveContact
     DRAPE_UINT m_flags;    // DRAPE_CONTACT_MADE ...
     DRAPE_UINT m_pushing;  // the stage in which the row pushed last
     DRAPE_UINT m_nodes[3];  // the first one again where unused
-    DRAPE_UINT m_rank;      // among the contacts of its feature
+    DRAPE_UINT m_rank;      // among the contacts of its feature; above bit 16 among those that act
 } SolveContact;
 
 // An obstacle that limits the motion near it.

@@ -108,7 +108,7 @@ DRAPE_RARE_FUNCTION void solveCloth(const Solve* solve, __global SolverNode* end
     Sweep sweep;
     beginNodes(solve, nodes);
     beginLinks(solve);
-    forAll(i, 0, DRAPE_RECORDED_BUCKETS) solve->m_shared[DRAPE_SHARED_PUSHED + i] = 0;
+    forAll(i, 0, DRAPE_MOST_BUCKETS) solve->m_shared[DRAPE_SHARED_PUSHED + i] = 0;
     resetMarks(solve, &sweep);
     syncAll();
     for (uint i = 0; i < solve->m_cloth->m_substeps; ++i)

@@ -8,6 +8,11 @@
 
 namespace drape
 {
+namespace
+{
+constexpr int kMostSubsteps = 0xfff0;  // a record of pushes has 16 bits for the stage
+}  // namespace
+
 bool PackedStep::fits(const SolverCloth& cloth, const ContactSource& source)
 {
     const ClothContacts& contacts = *cloth.m_contacts;
@@ -16,6 +21,7 @@ bool PackedStep::fits(const SolverCloth& cloth, const ContactSource& source)
     if (contacts.m_parts->leafCount() > 1 && cloth.m_substeps->links().partsRevision() != contacts.m_parts->revision())
         return false;
     if (contacts.m_order && contacts.m_order->anyUncoloured()) return false;
+    if (cloth.m_substeps->count() > kMostSubsteps) return false;
     for (const MotionLimit::Region& region : contacts.m_limit.regions())
         if (region.m_carry.m_starts) return false;
     if (contacts.m_features.empty()) return true;
