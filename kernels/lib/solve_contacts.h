@@ -21,7 +21,7 @@ typedef struct Sweep
     float m_worst;       // m, worst violation that the work-item met
 } Sweep;
 
-static void beginSweep(const Solve* solve, const uint substep, const int closes, Sweep* sweep)
+DRAPE_HOT_FUNCTION void beginSweep(const Solve* solve, const uint substep, const int closes, Sweep* sweep)
 {
     sweep->m_stage = substep + 1;
     sweep->m_passed = closes ? 1.0f : (float)(substep + 1) / (float)solve->m_cloth->m_substeps;
@@ -31,18 +31,18 @@ static void beginSweep(const Solve* solve, const uint substep, const int closes,
 }
 
 // Begins sweeps in a substep. The rounds go on.
-static void beginSubstep(const Solve* solve, const uint substep, Sweep* sweep)
+DRAPE_HOT_FUNCTION void beginSubstep(const Solve* solve, const uint substep, Sweep* sweep)
 {
     beginSweep(solve, substep, 0, sweep);
 }
 
 // Begins a sweep that closes the contacts.
-static void beginClosing(const Solve* solve, Sweep* sweep)
+DRAPE_HOT_FUNCTION void beginClosing(const Solve* solve, Sweep* sweep)
 {
     beginSweep(solve, solve->m_cloth->m_substeps, 1, sweep);
 }
 
-static SolveContact loadContact(const Solve* solve, const uint index)
+DRAPE_HOT_FUNCTION SolveContact loadContact(const Solve* solve, const uint index)
 {
     __global const float4* words = (__global const float4*)(solve->m_sorted + index);
     const float4 first = words[0], second = words[1], third = words[2];
@@ -133,7 +133,7 @@ typedef struct Displacements
     Vec3 m_nodes[3];
 } Displacements;
 
-static Displacements displacementsOf(const Solve* solve, const SolveContact* contact)
+DRAPE_HOT_FUNCTION Displacements displacementsOf(const Solve* solve, const SolveContact* contact)
 {
     Displacements at;
     for (int k = 0; k < 3; ++k)
@@ -142,7 +142,7 @@ static Displacements displacementsOf(const Solve* solve, const SolveContact* con
 }
 
 // Returns an upper bound of a contact's violation once the obstacle stands at the step's end, m.
-static float excessOf(const SolveContact* contact, const Displacements* at)
+DRAPE_HOT_FUNCTION float excessOf(const SolveContact* contact, const Displacements* at)
 {
     const Vec3 first = at->m_nodes[0];
     const Vec3 second = vec3Scale(vec3Sub(at->m_nodes[1], first), contact->m_weights[0]);
@@ -188,7 +188,7 @@ DRAPE_RARE_FUNCTION void renew(const Solve* solve, const uint index, const Solve
 }
 
 // Loads what pushes need of a contact, as vectors: all but the nodes.
-static ActingContact loadActing(const Solve* solve, const uint index)
+DRAPE_HOT_FUNCTION ActingContact loadActing(const Solve* solve, const uint index)
 {
     __global const float4* words = (__global const float4*)(solve->m_acting + index);
     const float4 normal = words[0], carried = words[1], held = words[2], weights = words[3], shares = words[4];
@@ -213,7 +213,7 @@ static ActingContact loadActing(const Solve* solve, const uint index)
     return acting;
 }
 
-static Vec3 rowWay(const ActingContact* acting, const uint count, const Displacements* at)
+DRAPE_HOT_FUNCTION Vec3 rowWay(const ActingContact* acting, const uint count, const Displacements* at)
 {
     Vec3 way = vec3Scale(at->m_nodes[0], acting->m_row.m_weights[0]);
     if (count > 1) way = vec3AddScaled(way, at->m_nodes[1], acting->m_row.m_weights[1]);
@@ -222,7 +222,7 @@ static Vec3 rowWay(const ActingContact* acting, const uint count, const Displace
 }
 
 // Loads the row of a contact. Its pushes begin anew in each stage.
-static ActingContact loadRow(const Solve* solve, const uint index, const SolveContact* contact, const uint stage)
+DRAPE_HOT_FUNCTION ActingContact loadRow(const Solve* solve, const uint index, const SolveContact* contact, const uint stage)
 {
     ActingContact acting = loadActing(solve, index);
     if (contact->m_pushing != stage)
@@ -234,14 +234,19 @@ static ActingContact loadRow(const Solve* solve, const uint index, const SolveCo
 }
 
 // Makes the row of a contact if it has none, and loads it.
-static ActingContact openRow(const Solve* solve, const uint index, const SolveContact* contact, const uint stage)
+DRAPE_HOT_FUNCTION ActingContact openRow(const Solve* solve, const uint index, const SolveContact* contact, const uint stage)
 {
-    if (!(contact->m_flags & DRAPE_CONTACT_MADE)) makeActing(solve, index, contact);
+    if (!(contact->m_flags & DRAPE_CONTACT_MADE))
+    {
+        const Solve view = *solve;
+        const SolveContact copy = *contact;
+        makeActing(&view, index, &copy);
+    }
     return loadRow(solve, index, contact, stage);
 }
 
 // Pushes the nodes of a contact with an open row. Returns whether there was anything to do.
-static int pushContact(const Solve* solve, const uint index, const SolveContact* contact, ActingContact* acting,
+DRAPE_HOT_FUNCTION int pushContact(const Solve* solve, const uint index, const SolveContact* contact, ActingContact* acting,
                        Sweep* sweep)
 {
     const uint count = DRAPE_CONTACT_COUNT(contact->m_flags);
@@ -264,7 +269,7 @@ static int pushContact(const Solve* solve, const uint index, const SolveContact*
 }
 
 // Projects a contact that is violated or pushes, with an open row. Returns whether it pushed.
-static int projectContact(const Solve* solve, const uint index, const SolveContact* contact, ActingContact* acting,
+DRAPE_HOT_FUNCTION int projectContact(const Solve* solve, const uint index, const SolveContact* contact, ActingContact* acting,
                           Sweep* sweep)
 {
     if (!(acting->m_row.m_inverseMobility > 0.0f)) return 0;
@@ -275,7 +280,9 @@ static int projectContact(const Solve* solve, const uint index, const SolveConta
         const float level = acting->m_row.m_level - (1.0f - sweep->m_passed) * acting->m_row.m_advance;
         if (level - vec3Dot(acting->m_row.m_normal, way) > 0.0f)
         {
-            renew(solve, index, contact, sweep->m_stage, sweep->m_passed);
+            const Solve view = *solve;
+            const SolveContact copy = *contact;
+            renew(&view, index, &copy, sweep->m_stage, sweep->m_passed);
             *acting = loadRow(solve, index, contact, sweep->m_stage);
             if (!(acting->m_row.m_inverseMobility > 0.0f)) return 0;
         }
@@ -284,7 +291,7 @@ static int projectContact(const Solve* solve, const uint index, const SolveConta
 }
 
 // Returns whether the contact is violated or pushes.
-static int isDue(const Solve* solve, const SolveContact* contact, const Sweep* sweep)
+DRAPE_HOT_FUNCTION int isDue(const Solve* solve, const SolveContact* contact, const Sweep* sweep)
 {
     if (contact->m_pushing == sweep->m_stage) return 1;
     const Displacements at = displacementsOf(solve, contact);
@@ -297,20 +304,15 @@ static int isDue(const Solve* solve, const SolveContact* contact, const Sweep* s
 #define DRAPE_MOST_ROUNDS 0xf000u
 #define DRAPE_ROUND_TAG(round) ((0xffffu - (round)) << 16)
 
-static void resetMarks(const Solve* solve, Sweep* sweep)
+DRAPE_HOT_FUNCTION void resetMarks(const Solve* solve, Sweep* sweep)
 {
-    __global const SolveGroup* group = solve->m_group;
     syncNodes();
 #ifdef DRAPE_GLOBAL_NODES
-    const uint last = group->m_firstBucket + group->m_nodeBuckets + group->m_faceBuckets + group->m_edgeBuckets;
-    for (uint b = group->m_firstBucket; b < last; ++b)
-    {
-        const SolveBucket bucket = solve->m_buckets[b];
-        forAll(i, bucket.m_first, bucket.m_first + bucket.m_count)
+    for (uint b = 0; b < bucketsOf(solve); ++b)
+        forAll(i, solve->m_shared[DRAPE_SHARED_FIRST + b], solve->m_shared[DRAPE_SHARED_LAST + b])
             solve->m_marks[solve->m_sorted[i].m_nodes[0]] = DRAPE_NO_MARK;
-    }
 #else
-    forAll(i, 0, group->m_nodes.m_count) solve->m_marks[i] = DRAPE_NO_MARK;
+    forAll(i, 0, solve->m_group->m_nodes.m_count) solve->m_marks[i] = DRAPE_NO_MARK;
 #endif
     if (get_local_id(0) == 0)
         for (int i = 0; i < 3; ++i)
@@ -321,7 +323,7 @@ static void resetMarks(const Solve* solve, Sweep* sweep)
 
 // Returns whether any of the group's contacts is due in this round. Three words take turns, so that one barrier is
 // enough.
-static int anyPending(const Solve* solve, Sweep* sweep)
+DRAPE_HOT_FUNCTION int anyPending(const Solve* solve, Sweep* sweep)
 {
     const int any = solve->m_shared[DRAPE_SHARED_PENDING + sweep->m_pending] != 0;
     if (get_local_id(0) == 0) solve->m_shared[DRAPE_SHARED_PENDING + (sweep->m_pending + 2) % 3] = 0;
@@ -331,7 +333,7 @@ static int anyPending(const Solve* solve, Sweep* sweep)
 
 // Visits contacts side by side, one for each work-item. A contact that acts remembers how many of its feature came
 // before it. Returns how many rounds actSideBySide() needs for the work-item's contact, 0 if it does not act.
-static uint visitSideBySide(const Solve* solve, const uint index, const int exists, Sweep* sweep)
+DRAPE_HOT_FUNCTION uint visitSideBySide(const Solve* solve, const uint index, const int exists, Sweep* sweep)
 {
     SolveContact contact;
     ActingContact acting;
@@ -379,7 +381,7 @@ static uint visitSideBySide(const Solve* solve, const uint index, const int exis
 }
 
 // Visits the contacts that act in this stage side by side, in so many rounds.
-static void actSideBySide(const Solve* solve, const uint index, const int exists, Sweep* sweep, const uint rounds)
+DRAPE_HOT_FUNCTION void actSideBySide(const Solve* solve, const uint index, const int exists, Sweep* sweep, const uint rounds)
 {
     SolveContact contact;
     ActingContact acting;
@@ -401,7 +403,7 @@ static void actSideBySide(const Solve* solve, const uint index, const int exists
 }
 
 // Visits contacts one after the other: all, or those that act in this stage.
-static uint visitInOrder(const Solve* solve, const uint first, const uint last, Sweep* sweep, const int acts)
+DRAPE_HOT_FUNCTION uint visitInOrder(const Solve* solve, const uint first, const uint last, Sweep* sweep, const int acts)
 {
     uint pushed = 0;
     for (uint i = first; i < last; ++i)
@@ -419,9 +421,23 @@ static uint visitInOrder(const Solve* solve, const uint first, const uint last, 
 // need.
 #define DRAPE_PUSH_RECORD(stage, rounds) ((stage) << 16 | (rounds))
 
-DRAPE_RARE_FUNCTION void sweepBucket(const Solve* solve, const uint index, Sweep* sweep)
+// Takes the group's buckets and their records of pushes into local memory, before the first sweep.
+DRAPE_HOT_FUNCTION void openBuckets(const Solve* solve)
 {
-    const uint first = solve->m_buckets[index].m_first, last = first + solve->m_buckets[index].m_count;
+    forAll(i, 0, bucketsOf(solve))
+    {
+        const SolveBucket bucket = solve->m_buckets[solve->m_group->m_firstBucket + i];
+        solve->m_shared[DRAPE_SHARED_PUSHED + i] = bucket.m_pushed;
+        solve->m_shared[DRAPE_SHARED_FIRST + i] = bucket.m_first;
+        solve->m_shared[DRAPE_SHARED_LAST + i] = bucket.m_first + bucket.m_count;
+    }
+    syncNodes();
+}
+
+// Sweeps over the contacts of a bucket, a number within the group.
+DRAPE_HOT_FUNCTION void sweepBucket(const Solve* solve, const uint index, Sweep* sweep)
+{
+    const uint first = solve->m_shared[DRAPE_SHARED_FIRST + index], last = solve->m_shared[DRAPE_SHARED_LAST + index];
     if (first == last) return;
     uint rounds = 0;
 #ifdef DRAPE_CPU
@@ -435,16 +451,15 @@ DRAPE_RARE_FUNCTION void sweepBucket(const Solve* solve, const uint index, Sweep
     }
 #endif
     if (rounds > 0)
-        atomic_max(solve->m_shared + DRAPE_SHARED_PUSHED + (index - solve->m_group->m_firstBucket),
-                   DRAPE_PUSH_RECORD(sweep->m_stage, rounds));
+        atomic_max(solve->m_shared + DRAPE_SHARED_PUSHED + index, DRAPE_PUSH_RECORD(sweep->m_stage, rounds));
 }
 
 // Visits the contacts of a bucket that act in this stage.
-DRAPE_RARE_FUNCTION void actInBucket(const Solve* solve, const uint index, Sweep* sweep)
+DRAPE_HOT_FUNCTION void actInBucket(const Solve* solve, const uint index, Sweep* sweep)
 {
-    const uint record = solve->m_shared[DRAPE_SHARED_PUSHED + (index - solve->m_group->m_firstBucket)];
+    const uint record = solve->m_shared[DRAPE_SHARED_PUSHED + index];
     if (record >> 16 != sweep->m_stage) return;
-    const uint first = solve->m_buckets[index].m_first, last = first + solve->m_buckets[index].m_count;
+    const uint first = solve->m_shared[DRAPE_SHARED_FIRST + index], last = solve->m_shared[DRAPE_SHARED_LAST + index];
 #ifdef DRAPE_CPU
     visitInOrder(solve, first, last, sweep, 1);
 #else
@@ -453,34 +468,18 @@ DRAPE_RARE_FUNCTION void actInBucket(const Solve* solve, const uint index, Sweep
 #endif
 }
 
-static void sweepBuckets(const Solve* solve, const uint first, const uint count, Sweep* sweep)
+// Sweeps over buckets of the group, then `acting` times over the contacts in all of its buckets that act.
+DRAPE_HOT_FUNCTION void sweepBuckets(const Solve* solve, const uint first, const uint last, const uint acting,
+                                     Sweep* sweep)
 {
-    for (uint i = first; i < first + count; ++i)
+    for (uint i = first; i < last; ++i)
         sweepBucket(solve, i, sweep);
-}
-
-static void sweepNodes(const Solve* solve, Sweep* sweep)
-{
-    sweepBuckets(solve, solve->m_group->m_firstBucket, solve->m_group->m_nodeBuckets, sweep);
-}
-
-static void sweepFaces(const Solve* solve, Sweep* sweep)
-{
-    const uint count = solve->m_group->m_nodeBuckets + solve->m_group->m_faceBuckets;
-    sweepBuckets(solve, solve->m_group->m_firstBucket, count, sweep);
-}
-
-// Sweeps over the edges' contacts, then `acting` times over the group's contacts that act.
-static void sweepEdges(const Solve* solve, Sweep* sweep, const uint acting)
-{
-    __global const SolveGroup* group = solve->m_group;
-    const uint others = group->m_nodeBuckets + group->m_faceBuckets;
-    sweepBuckets(solve, group->m_firstBucket + others, group->m_edgeBuckets, sweep);
+    if (acting == 0) return;
     const float worst = sweep->m_worst;
-    if (acting > 0) syncNodes();  // the record of pushes
+    syncNodes();  // the records of pushes
     for (uint i = 0; i < acting; ++i)
-        for (uint bucket = 0; bucket < others + group->m_edgeBuckets; ++bucket)
-            actInBucket(solve, group->m_firstBucket + bucket, sweep);
+        for (uint bucket = 0; bucket < bucketsOf(solve); ++bucket)
+            actInBucket(solve, bucket, sweep);
     sweep->m_worst = worst;
 }
 

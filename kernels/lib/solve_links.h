@@ -5,28 +5,64 @@
 #include "link_row.h"
 #include "solve_view.h"
 
-static void visitLinkAt(const Solve* solve, const uint index)
+// A link of a batch, as a work-item loads it.
+typedef struct LoadedLink
 {
-    const uint4 link = ((__global const uint4*)solve->m_links)[index];
-    const float4 span = ((__global const float4*)solve->m_spans)[index];
+    uint4 m_link;
+    float4 m_span;
+} LoadedLink;
+
+DRAPE_HOT_FUNCTION LoadedLink loadLink(const Solve* solve, const uint index)
+{
+    LoadedLink loaded;
+    loaded.m_link = ((__global const uint4*)solve->m_links)[index];
+    loaded.m_span = ((__global const float4*)solve->m_spans)[index];
+    return loaded;
+}
+
+DRAPE_HOT_FUNCTION void visitLoadedLink(const Solve* solve, const LoadedLink* loaded)
+{
+    const uint4 link = loaded->m_link;
     SolverNode a = loadNode(solve, link.x), b = loadNode(solve, link.y);
-    visitLink(&a, &b, xyz(span), span.w, as_float(link.w));
+    visitLink(&a, &b, xyz(loaded->m_span), loaded->m_span.w, as_float(link.w));
     storeNode(solve, link.x, &a);
     storeNode(solve, link.y, &b);
 }
 
-static void sweepLinks(const Solve* solve)
+DRAPE_HOT_FUNCTION void visitLinks(const Solve* solve, uint first, const uint last, const uint step)
+{
+    for (; first < last; first += step)
+    {
+        const LoadedLink link = loadLink(solve, first);
+        visitLoadedLink(solve, &link);
+    }
+}
+
+// Loads each batch's links while the batch before it is visited.
+DRAPE_HOT_FUNCTION void sweepLinks(const Solve* solve)
 {
     const SolveRange range = solve->m_group->m_linkBatches;
-    for (uint i = range.m_first; i < range.m_first + range.m_count; ++i)
+    if (range.m_count == 0) return;
+    const uint item = get_local_id(0), width = get_local_size(0);
+    SolveBatch batch = solve->m_linkBatches[range.m_first];
+    LoadedLink link;
+    if (batch.m_first + item < batch.m_last) link = loadLink(solve, batch.m_first + item);
+    for (uint i = 1; i <= range.m_count; ++i)
     {
-        const SolveBatch batch = solve->m_linkBatches[i];
+        SolveBatch next = batch;
+        LoadedLink nextLink;
+        if (i < range.m_count) next = solve->m_linkBatches[range.m_first + i];
+        if (next.m_first + item < next.m_last) nextLink = loadLink(solve, next.m_first + item);
         if (!batch.m_serial)
-            forAll(k, batch.m_first, batch.m_last) visitLinkAt(solve, k);
-        else if (get_local_id(0) == 0)
-            for (uint k = batch.m_first; k < batch.m_last; ++k)
-                visitLinkAt(solve, k);
+        {
+            if (batch.m_first + item < batch.m_last) visitLoadedLink(solve, &link);
+            visitLinks(solve, batch.m_first + item + width, batch.m_last, width);
+        }
+        else if (item == 0)
+            visitLinks(solve, batch.m_first, batch.m_last, 1);
         syncNodes();
+        batch = next;
+        link = nextLink;
     }
 }
 

@@ -41,23 +41,20 @@ static int takesPart(const Solve* solve, const SolvePass* pass)
 }
 
 // Runs a pass over the contacts of the group.
-static void sweepPass(const Solve* solve, const SolvePass* pass, Sweep* sweep)
+DRAPE_HOT_FUNCTION void sweepPass(const Solve* solve, const SolvePass* pass, Sweep* sweep)
 {
     __global const SolveGroup* group = solve->m_group;
-    const uint buckets = group->m_nodeBuckets + group->m_faceBuckets + group->m_edgeBuckets;
-    forAll(i, 0, buckets) solve->m_shared[DRAPE_SHARED_PUSHED + i] =
-        solve->m_buckets[group->m_firstBucket + i].m_pushed;
-    syncNodes();
     const int closes = pass->m_substep == DRAPE_CLOSING;
     if (closes)
         beginClosing(solve, sweep);
     else
         beginSubstep(solve, pass->m_substep, sweep);
-    if (pass->m_pass == DRAPE_PASS_NODES) sweepNodes(solve, sweep);
-    if (pass->m_pass == DRAPE_PASS_FACES) sweepFaces(solve, sweep);
-    if (pass->m_pass == DRAPE_PASS_EDGES) sweepEdges(solve, sweep, closes ? 0 : solve->m_cloth->m_actingSweeps);
+    const uint nodes = group->m_nodeBuckets, faces = nodes + group->m_faceBuckets;
+    const int ofEdges = pass->m_pass == DRAPE_PASS_EDGES;
+    const uint last = ofEdges ? faces + group->m_edgeBuckets : pass->m_pass == DRAPE_PASS_FACES ? faces : nodes;
+    sweepBuckets(solve, ofEdges ? faces : 0, last, ofEdges && !closes ? solve->m_cloth->m_actingSweeps : 0, sweep);
     syncNodes();
-    forAll(i, 0, buckets) solve->m_buckets[group->m_firstBucket + i].m_pushed =
+    forAll(i, 0, bucketsOf(solve)) solve->m_buckets[group->m_firstBucket + i].m_pushed =
         solve->m_shared[DRAPE_SHARED_PUSHED + i];
     if (closes && pass->m_pass != DRAPE_PASS_NODES && sweep->m_worst > 0.0f)
         atomic_max((__global uint*)(solve->m_progress->m_worst + pass->m_sweep), as_uint(sweep->m_worst));

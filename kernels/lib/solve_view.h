@@ -7,6 +7,10 @@
 #include "../shared/solve_step.h"
 #include "vec3.h"
 
+// Functions that sweeps run through are inlined, so that the view stays in registers: a function that is not gets a copy,
+// in a memory of the work-item's own, where every access waits.
+#define DRAPE_HOT_FUNCTION static __attribute__((always_inline))
+
 // m_nodes, m_marks: of the nodes from m_base on, counted from the cloth's first node. m_marks: see nextRound().
 typedef struct Solve
 {
@@ -39,11 +43,14 @@ typedef struct Solve
 } Solve;
 
 // Words of local memory that a group shares: one for sums, three for rounds, then by bucket of the group a record of its
-// pushes. A group has a bucket for its nodes and two for each of 63 colours at most.
+// pushes, the place of its first contact and the end of its last one. A group has a bucket for its nodes and two for
+// each of 63 colours at most.
 #define DRAPE_SHARED_PENDING 1
 #define DRAPE_SHARED_PUSHED 4
 #define DRAPE_MOST_BUCKETS 127
-#define DRAPE_SHARED_WORDS (DRAPE_SHARED_PUSHED + DRAPE_MOST_BUCKETS)
+#define DRAPE_SHARED_FIRST (DRAPE_SHARED_PUSHED + DRAPE_MOST_BUCKETS)
+#define DRAPE_SHARED_LAST (DRAPE_SHARED_FIRST + DRAPE_MOST_BUCKETS)
+#define DRAPE_SHARED_WORDS (DRAPE_SHARED_LAST + DRAPE_MOST_BUCKETS)
 
 // The size of a kernel's work-groups, which is `gpu` on a GPU.
 #ifdef DRAPE_CPU
@@ -56,7 +63,7 @@ typedef struct Solve
 
 // Waits until the group's work-items have written what others read: nodes and marks. A CPU's group has one work-item,
 // since compilers for CPUs copy the code behind each barrier that is not always reached.
-static void syncNodes(void)
+DRAPE_HOT_FUNCTION void syncNodes(void)
 {
 #ifndef DRAPE_CPU
 #ifdef DRAPE_GLOBAL_NODES
@@ -69,7 +76,7 @@ static void syncNodes(void)
 
 // Waits for global memory, too. Data of a contact needs no wait between sweeps: the same work-item visits it in all of
 // them.
-static void syncAll(void)
+DRAPE_HOT_FUNCTION void syncAll(void)
 {
 #ifndef DRAPE_CPU
     barrier(CLK_LOCAL_MEM_FENCE | CLK_GLOBAL_MEM_FENCE);
@@ -77,7 +84,7 @@ static void syncAll(void)
 }
 
 // Returns whether a work-item's flag is set in any of the group's.
-static int anyInGroup(const Solve* solve, const int flag)
+DRAPE_HOT_FUNCTION int anyInGroup(const Solve* solve, const int flag)
 {
     if (get_local_id(0) == 0) *solve->m_shared = 0;
     syncNodes();
@@ -89,7 +96,7 @@ static int anyInGroup(const Solve* solve, const int flag)
 }
 
 // Returns the greatest of the work-items' values, none of which is negative.
-static float mostInGroup(const Solve* solve, const float value)
+DRAPE_HOT_FUNCTION float mostInGroup(const Solve* solve, const float value)
 {
     if (get_local_id(0) == 0) *solve->m_shared = 0;
     syncNodes();
@@ -105,7 +112,7 @@ static Vec3 xyz(const float4 v)
     return vec3(v.x, v.y, v.z);
 }
 
-static SolverNode loadNode(const Solve* solve, const uint node)
+DRAPE_HOT_FUNCTION SolverNode loadNode(const Solve* solve, const uint node)
 {
     const float4 v = ((DRAPE_NODE_SPACE const float4*)solve->m_nodes)[node - solve->m_base];
     SolverNode loaded;
@@ -114,19 +121,25 @@ static SolverNode loadNode(const Solve* solve, const uint node)
     return loaded;
 }
 
-static void storeNode(const Solve* solve, const uint node, const SolverNode* value)
+DRAPE_HOT_FUNCTION void storeNode(const Solve* solve, const uint node, const SolverNode* value)
 {
     const Vec3 d = value->m_displacement;
     ((DRAPE_NODE_SPACE float4*)solve->m_nodes)[node - solve->m_base] = (float4)(d.x, d.y, d.z, value->m_inverseMass);
 }
 
-static DRAPE_NODE_SPACE SolverNode* nodeAt(const Solve* solve, const uint node)
+DRAPE_HOT_FUNCTION DRAPE_NODE_SPACE SolverNode* nodeAt(const Solve* solve, const uint node)
 {
     return solve->m_nodes + (node - solve->m_base);
 }
 
+// Returns the number of the group's buckets, which are adjacent.
+DRAPE_HOT_FUNCTION uint bucketsOf(const Solve* solve)
+{
+    return solve->m_group->m_nodeBuckets + solve->m_group->m_faceBuckets + solve->m_group->m_edgeBuckets;
+}
+
 // Sets all but the nodes and the group.
-static void openCloth(Solve* solve, const SolveLayout* layout, __global const SolveInputWord* input,
+DRAPE_HOT_FUNCTION void openCloth(Solve* solve, const SolveLayout* layout, __global const SolveInputWord* input,
                       __global const SolveTopologyWord* topology, __global const Contact* contacts,
                       __global SolveWorkWord* work, const uint index)
 {

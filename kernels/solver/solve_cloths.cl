@@ -11,7 +11,7 @@
 #include "solver_bindings.h"
 
 // Opens the group of the work-group's number in the list of groups by level.
-static void openLeaf(Solve* solve, const SolveLayout* layout, __global const SolveInputWord* input,
+DRAPE_HOT_FUNCTION void openLeaf(Solve* solve, const SolveLayout* layout, __global const SolveInputWord* input,
                      __global const SolveTopologyWord* topology, __global const Contact* contacts,
                      __global SolveWorkWord* work, const SolvePass* pass, __local SolverNode* nodes,
                      __local uint* marks, __local uint* shared)
@@ -26,7 +26,7 @@ static void openLeaf(Solve* solve, const SolveLayout* layout, __global const Sol
 }
 
 // See MotionLimit::apply().
-static void applyLimits(const Solve* solve)
+DRAPE_RARE_FUNCTION void applyLimits(const Solve* solve)
 {
     const SolveRange regions = solve->m_cloth->m_regions, nodes = solve->m_group->m_nodes;
     if (regions.m_count == 0 || !anyInGroup(solve, findFarNodes(solve, nodes))) return;
@@ -44,79 +44,63 @@ static void applyLimits(const Solve* solve)
     }
 }
 
-static void runSubstep(const Solve* solve, const uint substep, Sweep* sweep)
+// Begins the step, up to its first substep.
+DRAPE_RARE_FUNCTION void beginCloth(const Solve* solve)
+{
+    beginNodes(solve, solve->m_group->m_nodes);
+    beginLinks(solve);
+    syncAll();
+}
+
+// Ends the substep before, if there is one, and begins this one.
+DRAPE_RARE_FUNCTION void nextSubstep(const Solve* solve, const uint substep)
 {
     __global const SolveCloth* cloth = solve->m_cloth;
     const SolveRange nodes = solve->m_group->m_nodes;
+    if (substep > 0) endNodes(solve, nodes);
     advanceNodes(solve, nodes);
     syncNodes();
     // Limits beside a moving obstacle hold at the step's end alone.
-    if (substep > 0 && (cloth->m_rests || substep + 1 == cloth->m_substeps))
-    {
-        applyLimits(solve);
-        boundShifts(solve, nodes);
-        syncNodes();
-    }
-    beginSubstep(solve, substep, sweep);
-    for (uint i = 0; i < cloth->m_linkSweeps; ++i)
-    {
-        sweepLinks(solve);
-        sweepFaces(solve, sweep);
-        sweepEdges(solve, sweep, cloth->m_actingSweeps);
-    }
-    endNodes(solve, nodes);
+    if (substep == 0 || !(cloth->m_rests || substep + 1 == cloth->m_substeps)) return;
+    applyLimits(solve);
+    boundShifts(solve, nodes);
     syncNodes();
 }
 
-// Returns the worst violation that a closing sweep met, m.
-static float closeOnce(const Solve* solve, Sweep* sweep)
+// Ends the last substep.
+DRAPE_RARE_FUNCTION void endSubsteps(const Solve* solve)
 {
-    beginClosing(solve, sweep);
-    sweepFaces(solve, sweep);
-    sweepEdges(solve, sweep, 0);
-    return mostInGroup(solve, sweep->m_worst);
+    const SolveRange nodes = solve->m_group->m_nodes;
+    endNodes(solve, nodes);
+    syncNodes();
+    rememberNodes(solve, nodes);
+    syncNodes();
+    applyLimits(solve);
 }
 
-// Sweeps until no contact is violated by more than the tolerances.
-static void closeContacts(const Solve* solve, Sweep* sweep)
+// Brings nodes back before another closing sweep.
+DRAPE_RARE_FUNCTION void limitAgain(const Solve* solve)
 {
-    __global const SolveCloth* cloth = solve->m_cloth;
+    if (solve->m_cloth->m_rests)
+        keepNear(solve, solve->m_group->m_nodes);
+    else
+        applyLimits(solve);
+}
+
+// Limits nodes without contacts: see StepSolver::holdOthers().
+DRAPE_RARE_FUNCTION void limitOthers(const Solve* solve)
+{
     const SolveRange nodes = solve->m_group->m_nodes;
-    const uint blocks = solve->m_progress->m_blocks;
-    float worst = closeOnce(solve, sweep);
-    for (uint done = 1; needsClosing(done, blocks, worst, cloth->m_fineViolation, cloth->m_mostViolation); ++done)
-    {
-        if (cloth->m_rests)
-            keepNear(solve, nodes);
-        else
-            applyLimits(solve);
-        worst = closeOnce(solve, sweep);
-    }
-    // Nodes go last: see StepSolver::close().
-    if (worst > cloth->m_fineViolation) sweepNodes(solve, sweep);
-    if (!cloth->m_rests || !anyInGroup(solve, findFarNodes(solve, nodes))) return;
+    if (!solve->m_cloth->m_rests || !anyInGroup(solve, findFarNodes(solve, nodes))) return;
     allowByResting(solve, nodes, 0);
     syncNodes();
     bringBackAllowed(solve, nodes);
     syncNodes();
 }
 
-// Solves the whole step of a cloth of one leaf, whatever the group's size.
-DRAPE_RARE_FUNCTION void solveCloth(const Solve* solve, __global SolverNode* ends, __global SolveResult* result)
+DRAPE_RARE_FUNCTION void endCloth(const Solve* solve, __global SolverNode* ends, __global SolveResult* result)
 {
     const SolveRange nodes = solve->m_group->m_nodes;
-    Sweep sweep;
-    beginNodes(solve, nodes);
-    beginLinks(solve);
-    forAll(i, 0, DRAPE_MOST_BUCKETS) solve->m_shared[DRAPE_SHARED_PUSHED + i] = 0;
-    resetMarks(solve, &sweep);
-    syncAll();
-    for (uint i = 0; i < solve->m_cloth->m_substeps; ++i)
-        runSubstep(solve, i, &sweep);
-    rememberNodes(solve, nodes);
-    syncNodes();
-    applyLimits(solve);
-    if (solve->m_progress->m_blocks > 0) closeContacts(solve, &sweep);
     syncAll();
     addShifts(solve, nodes);
     syncAll();
@@ -130,14 +114,64 @@ DRAPE_RARE_FUNCTION void solveCloth(const Solve* solve, __global SolverNode* end
     result->m_refused = solve->m_progress->m_refused;
 }
 
-static void loadLeaf(const Solve* solve, __global const SolverNode* from)
+// Sweeps until no contact is violated by more than the tolerances.
+DRAPE_HOT_FUNCTION void closeContacts(const Solve* solve, Sweep* sweep)
+{
+    __global const SolveCloth* cloth = solve->m_cloth;
+    const float fine = cloth->m_fineViolation, most = cloth->m_mostViolation;
+    const uint blocks = solve->m_progress->m_blocks;
+    int isOpen = 1, isLast = 0;
+    for (uint done = 1; isOpen || isLast; ++done)
+    {
+        beginClosing(solve, sweep);
+        sweepBuckets(solve, 0, isLast ? solve->m_group->m_nodeBuckets : bucketsOf(solve), 0, sweep);
+        if (isLast) return;
+        const float worst = mostInGroup(solve, sweep->m_worst);
+        isOpen = needsClosing(done, blocks, worst, fine, most);
+        isLast = !isOpen && worst > fine;  // nodes go last: see StepSolver::close()
+        if (!isOpen) continue;
+        const Solve view = *solve;
+        limitAgain(&view);
+    }
+}
+
+// Solves the whole step of a cloth of one leaf, whatever the group's size.
+DRAPE_HOT_FUNCTION void solveCloth(const Solve* solve, __global SolverNode* ends, __global SolveResult* result)
+{
+    const Solve view = *solve;
+    Sweep sweep;
+    beginCloth(&view);
+    openBuckets(solve);
+    resetMarks(solve, &sweep);
+    const uint substeps = solve->m_cloth->m_substeps, sweeps = solve->m_cloth->m_linkSweeps;
+    const uint acting = solve->m_cloth->m_actingSweeps;
+    for (uint i = 0; i < substeps * sweeps; ++i)
+    {
+        if (i % sweeps == 0)
+        {
+            nextSubstep(&view, i / sweeps);
+            beginSubstep(solve, i / sweeps, &sweep);
+        }
+        sweepLinks(solve);
+        sweepBuckets(solve, 0, bucketsOf(solve), acting, &sweep);
+    }
+    endSubsteps(&view);
+    if (solve->m_progress->m_blocks > 0)
+    {
+        closeContacts(solve, &sweep);
+        limitOthers(&view);
+    }
+    endCloth(&view, ends, result);
+}
+
+DRAPE_HOT_FUNCTION void loadLeaf(const Solve* solve, __global const SolverNode* from)
 {
     const SolveRange nodes = solve->m_group->m_nodes;
     forAll(i, 0, nodes.m_count)
         ((__local float4*)solve->m_nodes)[i] = ((__global const float4*)from)[nodes.m_first + i];
 }
 
-static void storeLeaf(const Solve* solve, __global SolverNode* to)
+DRAPE_HOT_FUNCTION void storeLeaf(const Solve* solve, __global SolverNode* to)
 {
     const SolveRange nodes = solve->m_group->m_nodes;
     forAll(i, 0, nodes.m_count)
@@ -145,7 +179,7 @@ static void storeLeaf(const Solve* solve, __global SolverNode* to)
 }
 
 // Runs one pass over a leaf.
-DRAPE_RARE_FUNCTION void sweepLeaf(const Solve* solve, const SolvePass* pass, __global SolverNode* places)
+DRAPE_HOT_FUNCTION void sweepLeaf(const Solve* solve, const SolvePass* pass, __global SolverNode* places)
 {
     if (!takesPart(solve, pass)) return;
     Sweep sweep;
@@ -157,6 +191,7 @@ DRAPE_RARE_FUNCTION void sweepLeaf(const Solve* solve, const SolvePass* pass, __
     }
     else
     {
+        openBuckets(solve);
         resetMarks(solve, &sweep);
         if (pass->m_pass == DRAPE_PASS_FACES && pass->m_sweep > 0 && solve->m_cloth->m_rests)
             keepNear(solve, solve->m_group->m_nodes);

@@ -9,7 +9,7 @@
 #include "solver_bindings.h"
 
 // Opens the group of the work-group's number in the list of groups by level.
-static void openGroup(Solve* solve, const SolveLayout* layout, __global const SolveInputWord* input,
+DRAPE_HOT_FUNCTION void openGroup(Solve* solve, const SolveLayout* layout, __global const SolveInputWord* input,
                       __global const SolveTopologyWord* topology, __global const Contact* contacts,
                       __global SolveWorkWord* work, const SolvePass* pass, __local uint* shared)
 {
@@ -38,6 +38,7 @@ __kernel __attribute__((reqd_work_group_size(DRAPE_GROUP_SIZE(DRAPE_SOLVE_JOIN_G
     if (!takesPart(&solve, &pass)) return;
     if (pass.m_pass == DRAPE_PASS_LINKS) return sweepLinks(&solve);
     Sweep sweep;
+    openBuckets(&solve);
     resetMarks(&solve, &sweep);
     sweepPass(&solve, &pass, &sweep);
 }
