@@ -380,24 +380,21 @@ DRAPE_HOT_FUNCTION uint visitSideBySide(const Solve* solve, const uint index, co
     }
 }
 
-// Visits the contacts that act in this stage side by side, in so many rounds.
-DRAPE_HOT_FUNCTION void actSideBySide(const Solve* solve, const uint index, const int exists, Sweep* sweep, const uint rounds)
+// Visits contacts that were loaded, one for each work-item that has any, if they act in this stage. The group takes so
+// many rounds.
+DRAPE_HOT_FUNCTION void actSideBySide(const Solve* solve, const uint index, const int exists,
+                                      const SolveContact* contact, const uint rounds, Sweep* sweep)
 {
-    SolveContact contact;
     ActingContact acting;
     uint round = rounds;
-    if (exists)
+    if (exists && contact->m_pushing == sweep->m_stage)
     {
-        contact = loadContact(solve, index);
-        if (contact.m_pushing == sweep->m_stage)
-        {
-            acting = loadActing(solve, index);
-            if (acting.m_row.m_inverseMobility > 0.0f) round = contact.m_rank >> 16;
-        }
+        acting = loadActing(solve, index);
+        if (acting.m_row.m_inverseMobility > 0.0f) round = contact->m_rank >> 16;
     }
     for (uint i = 0; i < rounds; ++i)
     {
-        if (i == round) pushContact(solve, index, &contact, &acting, sweep);
+        if (i == round) pushContact(solve, index, contact, &acting, sweep);
         syncNodes();
     }
 }
@@ -450,21 +447,49 @@ DRAPE_HOT_FUNCTION void sweepBucket(const Solve* solve, const uint index, Sweep*
         rounds = max(rounds, own);
     }
 #endif
-    if (rounds > 0)
-        atomic_max(solve->m_shared + DRAPE_SHARED_PUSHED + index, DRAPE_PUSH_RECORD(sweep->m_stage, rounds));
+    // Most contacts find their rounds recorded: atomics on one word wait for each other.
+    const uint record = DRAPE_PUSH_RECORD(sweep->m_stage, rounds);
+    if (rounds > 0 && solve->m_shared[DRAPE_SHARED_PUSHED + index] < record)
+        atomic_max(solve->m_shared + DRAPE_SHARED_PUSHED + index, record);
 }
 
-// Visits the contacts of a bucket that act in this stage.
-DRAPE_HOT_FUNCTION void actInBucket(const Solve* solve, const uint index, Sweep* sweep)
+// Returns the next bucket, from `index` on, in which contacts act in this stage; the number of buckets if there is none.
+DRAPE_HOT_FUNCTION uint nextActing(const Solve* solve, uint index, const uint count, const uint stage)
 {
-    const uint record = solve->m_shared[DRAPE_SHARED_PUSHED + index];
-    if (record >> 16 != sweep->m_stage) return;
-    const uint first = solve->m_shared[DRAPE_SHARED_FIRST + index], last = solve->m_shared[DRAPE_SHARED_LAST + index];
+    while (index < count && solve->m_shared[DRAPE_SHARED_PUSHED + index] >> 16 != stage)
+        ++index;
+    return index;
+}
+
+// Visits the contacts of all buckets that act in this stage. Loads each bucket's contacts while the one before it is
+// visited.
+DRAPE_HOT_FUNCTION void sweepActing(const Solve* solve, const uint count, Sweep* sweep)
+{
+    uint index = nextActing(solve, 0, count, sweep->m_stage);
 #ifdef DRAPE_CPU
-    visitInOrder(solve, first, last, sweep, 1);
+    for (; index < count; index = nextActing(solve, index + 1, count, sweep->m_stage))
+        visitInOrder(solve, solve->m_shared[DRAPE_SHARED_FIRST + index], solve->m_shared[DRAPE_SHARED_LAST + index],
+                     sweep, 1);
 #else
-    for (uint start = first; start < last; start += get_local_size(0))
-        actSideBySide(solve, start + get_local_id(0), start + get_local_id(0) < last, sweep, record & 0xffffu);
+    __local const uint* firsts = solve->m_shared + DRAPE_SHARED_FIRST;
+    __local const uint* lasts = solve->m_shared + DRAPE_SHARED_LAST;
+    const uint item = get_local_id(0), width = get_local_size(0);
+    SolveContact loaded;
+    if (index < count && firsts[index] + item < lasts[index]) loaded = loadContact(solve, firsts[index] + item);
+    while (index < count)
+    {
+        const uint last = lasts[index], rounds = solve->m_shared[DRAPE_SHARED_PUSHED + index] & 0xffffu;
+        uint own = firsts[index] + item;
+        SolveContact contact = loaded;
+        index = nextActing(solve, index + 1, count, sweep->m_stage);
+        if (index < count && firsts[index] + item < lasts[index]) loaded = loadContact(solve, firsts[index] + item);
+        actSideBySide(solve, own, own < last, &contact, rounds, sweep);
+        for (own += width; own - item < last; own += width)
+        {
+            if (own < last) contact = loadContact(solve, own);
+            actSideBySide(solve, own, own < last, &contact, rounds, sweep);
+        }
+    }
 #endif
 }
 
@@ -478,8 +503,7 @@ DRAPE_HOT_FUNCTION void sweepBuckets(const Solve* solve, const uint first, const
     const float worst = sweep->m_worst;
     syncNodes();  // the records of pushes
     for (uint i = 0; i < acting; ++i)
-        for (uint bucket = 0; bucket < bucketsOf(solve); ++bucket)
-            actInBucket(solve, bucket, sweep);
+        sweepActing(solve, bucketsOf(solve), sweep);
     sweep->m_worst = worst;
 }
 
