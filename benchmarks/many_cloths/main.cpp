@@ -12,6 +12,7 @@
 #include "benchmarks/support/arguments.h"
 #include "benchmarks/support/result_hash.h"
 #include "tools/cloth_drop/drop_world.h"
+#include "tools/cloth_drop/step_parts.h"
 #include "tools/common/program.h"
 
 namespace drape::bench
@@ -42,10 +43,24 @@ constexpr Method kMethods[] = {{"host", Solver::Drape, SolverPlace::Host},
                                {"auto", Solver::Auto, SolverPlace::Auto},
                                {"bullet_links", Solver::Bullet, SolverPlace::Host}};
 
-double median(std::vector<double> values)
+// Returns the median of the second half of the run, in which most cloths are in contact.
+double median(const std::vector<double>& all)
 {
+    std::vector<double> values(all.begin() + std::ptrdiff_t(all.size() / 2), all.end());
     std::sort(values.begin(), values.end());
     return values[values.size() / 2];
+}
+
+// Adds the medians of the step's parts to the row.
+void addParts(const std::vector<WholeStepParts>& steps, Row& row)
+{
+    for (const NamedPart& part : stepParts())
+    {
+        std::vector<double> ms;
+        for (const WholeStepParts& step : steps)
+            ms.push_back(step.*part.m_ms);
+        row[std::string(part.m_name) + "_ms"] = median(ms);
+    }
 }
 
 // Moves the cloth to its place on a spiral, some millimetres above the one before.
@@ -72,15 +87,17 @@ Row measure(const ManyOptions& options, const DropScene& scene, const Method& me
         placeCloth(scene.m_cloth.m_mesh, i, options.m_cloths, moved.m_cloth.m_mesh);
         world.addCloth(moved, false);
     }
-    std::vector<double> stepMs, solveMs;
+    std::vector<double> stepMs;
+    std::vector<WholeStepParts> parts;
     std::size_t onDevice = 0;
     std::uint64_t hash = kEmptyHash;
     const std::clock_t cpu = std::clock();
     for (int step = 0; step < options.m_steps; ++step)
     {
         stepMs.push_back(world.step(scene.m_dt));
-        solveMs.push_back(plugin.statistics().m_solveMs);
-        onDevice = std::max(onDevice, plugin.statistics().m_clothsOnDevice);
+        const StepStatistics statistics = plugin.statistics();
+        parts.push_back(partsOf(statistics, stepMs.back(), world.world().collisionMs(), statistics.callsMs()));
+        onDevice = std::max(onDevice, statistics.m_clothsOnDevice);
     }
     const double cpuMs = 1e3 * double(std::clock() - cpu) / CLOCKS_PER_SEC / options.m_steps;
     for (int i = 0; i < options.m_cloths; ++i)
@@ -93,11 +110,9 @@ Row measure(const ManyOptions& options, const DropScene& scene, const Method& me
     row["nodes"] = options.m_nodes * options.m_nodes;
     row["device"] = plugin.device().m_device.m_name;
     row["cloths_on_device"] = onDevice;
-    // The second half of the run, in which most cloths are in contact.
-    const auto half = std::ptrdiff_t(stepMs.size() / 2);
-    row["median_ms"] = median(std::vector<double>(stepMs.begin() + half, stepMs.end()));
-    row["solve_ms"] = median(std::vector<double>(solveMs.begin() + half, solveMs.end()));
+    row["median_ms"] = median(stepMs);
     row["cpu_ms"] = cpuMs;
+    addParts(parts, row);
     row["hash"] = hashText(hash);
     return row;
 }

@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 
 #include "BulletCollision/BroadphaseCollision/btBroadphaseInterface.h"
 #include "BulletCollision/BroadphaseCollision/btOverlappingPairCache.h"
 #include "BulletCollision/CollisionShapes/btCompoundShape.h"
 #include "BulletCollision/NarrowPhaseCollision/btPersistentManifold.h"
 #include "LinearMath/btAabbUtil2.h"
+#include "bullet_plugin/adapter/body_jobs.h"
 #include "bullet_plugin/adapter/eligibility.h"
 #include "bullet_plugin/adapter/margins.h"
 #include "bullet_plugin/adapter/mesh_reader.h"
@@ -31,6 +33,11 @@ struct Extent
     {
         m_low.setMin(p);
         m_high.setMax(p);
+    }
+    void add(const Extent& other)
+    {
+        m_low.setMin(other.m_low);
+        m_high.setMax(other.m_high);
     }
     void addMapped(const Extent& other, const btTransform& map)
     {
@@ -59,15 +66,26 @@ void widen(btSoftBody& body, const Extent& extent, btScalar reach)
 // Extents of a body's nodes at the start and the end of a step, without nodes that are not finite.
 struct Way
 {
-    explicit Way(const btSoftBody& body)
+    Way() = default;
+    // threads: null for the caller alone.
+    Way(const btSoftBody& body, ThreadTeam* threads)
     {
-        for (int i = 0; i < body.m_nodes.size(); ++i)
+        std::mutex mutex;
+        const auto read = [&](std::size_t first, std::size_t last)
         {
-            const btSoftBody::Node& node = body.m_nodes[i];
-            if (!finite(node.m_x) || !finite(node.m_q)) continue;
-            m_start.add(node.m_q);
-            m_end.add(node.m_x);
-        }
+            Way part;
+            for (std::size_t i = first; i < last; ++i)
+            {
+                const btSoftBody::Node& node = body.m_nodes[static_cast<int>(i)];
+                if (!finite(node.m_x) || !finite(node.m_q)) continue;
+                part.m_start.add(node.m_q);
+                part.m_end.add(node.m_x);
+            }
+            const std::lock_guard<std::mutex> lock(mutex);
+            m_start.add(part.m_start);
+            m_end.add(part.m_end);
+        };
+        forRanges(static_cast<std::size_t>(body.m_nodes.size()), threads, read);
     }
 
     // The paths as an obstacle sees them beside its bounds: those of its own pose, which the motion may not have
@@ -182,40 +200,8 @@ private:
     const btScalar m_activation;
     const bool m_resting;
 };
-}  // namespace
-
-std::vector<StepObstacle> stepObstacles(const PluginState& state, const btSoftBody& body, KinematicMotions& motions,
-                                        bool resting)
+void coverMotion(const PluginState& state, btSoftBody& body, const Way& way, const std::vector<StepObstacle>& obstacles)
 {
-    CollectObstacles collect(motions, btScalar(state.settings().m_activation), resting);
-    btBroadphaseInterface* broadphase = body.m_worldInfo ? body.m_worldInfo->m_broadphase : nullptr;
-    const btVector3 far(BT_LARGE_FLOAT, BT_LARGE_FLOAT, BT_LARGE_FLOAT);
-    if (broadphase) broadphase->aabbTest(-far, far, collect);
-    return collect.m_found;
-}
-
-bool isReached(const PluginState& state, const btSoftBody& body, const std::vector<StepObstacle>& obstacles)
-{
-    const auto isActive = [](const StepObstacle& obstacle) { return obstacle.isActive(); };
-    if (std::none_of(obstacles.begin(), obstacles.end(), isActive)) return false;
-    Way rest(body);
-    rest.m_start = rest.m_end;  // the last step that it was awake in is over
-    if (rest.m_end.empty()) return false;
-    const btScalar reach = reachOf(state, body);
-    return std::any_of(obstacles.begin(), obstacles.end(),
-                       [&](const StepObstacle& obstacle)
-                       {
-                           if (!obstacle.isActive()) return false;
-                           const btScalar margin = reach + obstacle.m_reach + 2 * obstacle.m_change;
-                           return rest.seenBy(obstacle).meets(obstacle, margin) &&
-                                  mayTouch(state, body, *obstacle.m_object);
-                       });
-}
-
-void coverMotion(const PluginState& state, btSoftBody& body, const std::vector<StepObstacle>& obstacles)
-{
-    if (obstacles.empty()) return;
-    const Way way(body);
     if (way.m_end.empty()) return;
     Extent path = way.m_start;
     path.add(way.m_end.m_low);
@@ -238,5 +224,48 @@ void coverMotion(const PluginState& state, btSoftBody& body, const std::vector<S
         widen(body, path, reach);
         widen(body, seen, reach);
     }
+}
+}  // namespace
+
+std::vector<StepObstacle> stepObstacles(const PluginState& state, const btSoftBody& body, KinematicMotions& motions,
+                                        bool resting)
+{
+    CollectObstacles collect(motions, btScalar(state.settings().m_activation), resting);
+    btBroadphaseInterface* broadphase = body.m_worldInfo ? body.m_worldInfo->m_broadphase : nullptr;
+    const btVector3 far(BT_LARGE_FLOAT, BT_LARGE_FLOAT, BT_LARGE_FLOAT);
+    if (broadphase) broadphase->aabbTest(-far, far, collect);
+    return collect.m_found;
+}
+
+bool isReached(const PluginState& state, const btSoftBody& body, const std::vector<StepObstacle>& obstacles)
+{
+    const auto isActive = [](const StepObstacle& obstacle) { return obstacle.isActive(); };
+    if (std::none_of(obstacles.begin(), obstacles.end(), isActive)) return false;
+    Way rest(body, nullptr);
+    rest.m_start = rest.m_end;  // the last step that it was awake in is over
+    if (rest.m_end.empty()) return false;
+    const btScalar reach = reachOf(state, body);
+    return std::any_of(obstacles.begin(), obstacles.end(),
+                       [&](const StepObstacle& obstacle)
+                       {
+                           if (!obstacle.isActive()) return false;
+                           const btScalar margin = reach + obstacle.m_reach + 2 * obstacle.m_change;
+                           return rest.seenBy(obstacle).meets(obstacle, margin) &&
+                                  mayTouch(state, body, *obstacle.m_object);
+                       });
+}
+
+void coverMotions(const PluginState& state, const std::vector<btSoftBody*>& bodies,
+                  const std::vector<StepObstacle>& obstacles, ThreadTeam& threads)
+{
+    if (obstacles.empty()) return;
+    const auto sizeOf = [&](std::size_t i)
+    { return bodies[i]->isActive() ? static_cast<std::size_t>(bodies[i]->m_nodes.size()) : 0; };
+    std::vector<Way> ways(bodies.size());
+    forBodies(bodies.size(), threads, sizeOf,
+              [&](std::size_t i, ThreadTeam* team) { ways[i] = Way(*bodies[i], team); });
+    // Filters of the app are called on this thread alone.
+    for (std::size_t i = 0; i < bodies.size(); ++i)
+        if (bodies[i]->isActive()) coverMotion(state, *bodies[i], ways[i], obstacles);
 }
 }  // namespace drape

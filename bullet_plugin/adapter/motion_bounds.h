@@ -14,6 +14,7 @@
 
 #include "BulletSoftBody/btSoftBody.h"
 #include "bullet_plugin/adapter/kinematic_motion.h"
+#include "bullet_plugin/core/threads/thread_team.h"
 
 namespace drape
 {
@@ -42,10 +43,11 @@ std::vector<StepObstacle> stepObstacles(const PluginState& state, const btSoftBo
 // this step. Bullet wakes bodies only once the obstacle has arrived.
 bool isReached(const PluginState& state, const btSoftBody& body, const std::vector<StepObstacle>& obstacles);
 
-// Widens a handled body's bounds near an obstacle of a pair that Drape handles. They cover the nodes' paths, and
-// those paths relative to moving obstacles, grown by the reach of contacts. They reach a deforming mesh one step
+// Widens the bounds of awake handled bodies near an obstacle of a pair that Drape handles. They cover the nodes' paths,
+// and those paths relative to moving obstacles, grown by the reach of contacts. They reach a deforming mesh one step
 // before it may arrive: its vertices' motion is known from a pair's second step on. Bounds that are NaN, because of
 // an invalid node, become those of the other nodes if there is any obstacle. Bullet would otherwise stop simulating
 // the body.
-void coverMotion(const PluginState& state, btSoftBody& body, const std::vector<StepObstacle>& obstacles);
+void coverMotions(const PluginState& state, const std::vector<btSoftBody*>& bodies,
+                  const std::vector<StepObstacle>& obstacles, ThreadTeam& threads);
 }  // namespace drape

@@ -6,12 +6,14 @@
 #include <utility>
 
 #include "BulletSoftBody/btSoftBody.h"
+#include "bullet_plugin/adapter/body_jobs.h"
 #include "bullet_plugin/adapter/body_nodes.h"
 #include "bullet_plugin/adapter/bullet_links.h"
 #include "bullet_plugin/adapter/collision_step.h"
 #include "bullet_plugin/adapter/eligibility.h"
 #include "bullet_plugin/adapter/motion_bounds.h"
 #include "bullet_plugin/adapter/plugin_state.h"
+#include "bullet_plugin/adapter/prediction.h"
 #include "bullet_plugin/adapter/substep_body.h"
 #include "bullet_plugin/core/float_environment.h"
 #include "bullet_plugin/core/public_call.h"
@@ -25,7 +27,7 @@ namespace
 {
 // Predicts the motion as Bullet does, but treats a negative time step as zero. Bullet would derive a negative speed
 // bound from it.
-void predict(btSoftBody& body, btScalar dt)
+void predictByBullet(btSoftBody& body, btScalar dt)
 {
     const btScalar timescale = body.m_cfg.timescale;
     const bool passes = dt > 0 && timescale > 0;
@@ -103,6 +105,8 @@ struct SoftBodySolver::Work
         }
         return i;
     }
+    void predict(const btAlignedObjectArray<btSoftBody*>& bodies, btScalar dt);
+    void beginSubsteps(const btAlignedObjectArray<btSoftBody*>& bodies);
     bool take(btSoftBody& body);
     BodyContacts* contactsOf(const btSoftBody& body) { return m_step ? m_step->contactsOf(body) : nullptr; }
 
@@ -163,13 +167,46 @@ void SoftBodySolver::predictMotion(btScalar dt)
     guarded([&] { beginStep(dt, obstacles); }, failed);
     if (!m_state->ready()) return btDefaultSoftBodySolver::predictMotion(dt);
     Stopwatch watch;
-    for (int i = 0; i < m_softBodySet.size(); ++i)
-        if (m_softBodySet[i]->isActive()) predict(*m_softBodySet[i], dt);
+    m_work->predict(m_softBodySet, dt);
     m_work->m_parts.m_predictMs = watch.lapMs();
-    guarded([&] { coverMotions(obstacles); }, failed);
+    guarded([&] { coverMotions(*m_state, m_work->m_taken, obstacles, m_state->threads()); }, failed);
+    m_work->m_parts.m_mirrorMs += watch.lapMs();
 }
 
-// Runs the part of predictMotion() before Bullet's.
+// Predicts the bodies, plain ones side by side, and keeps what substeps need of the step's start. Bullet predicts the
+// others on this thread: its function may allocate memory and call the app. The broad phase gets all bounds in the
+// order of the bodies. Allocates no memory.
+void SoftBodySolver::Work::predict(const btAlignedObjectArray<btSoftBody*>& bodies, btScalar dt)
+{
+    const auto substepsAt = [this](const btSoftBody& body)
+    {
+        const auto found = m_substeps.find(&body);
+        return found == m_substeps.end() ? nullptr : found->second.get();
+    };
+    const auto predictOne = [&](btSoftBody& body, ThreadTeam* threads, const auto& predictNodes)
+    {
+        SubstepBody* const substeps = substepsAt(body);
+        if (substeps) substeps->beforePrediction(body, threads);
+        predictNodes(body);
+        if (substeps) substeps->afterPrediction(body, threads);
+    };
+    const auto isPlainAt = [&](int i) { return bodies[i]->isActive() && isPlain(*bodies[i], dt); };
+    const auto sizeOf = [&](std::size_t i)
+    { return isPlainAt(int(i)) ? static_cast<std::size_t>(bodies[int(i)]->m_nodes.size()) : 0; };
+    const auto predictAt = [&](std::size_t i, ThreadTeam* threads)
+    { predictOne(*bodies[int(i)], threads, [&](btSoftBody& body) { predictPlain(body, dt, threads); }); };
+    forBodies(static_cast<std::size_t>(bodies.size()), m_threads, sizeOf, predictAt);
+    for (int i = 0; i < bodies.size(); ++i)
+    {
+        if (!bodies[i]->isActive()) continue;
+        if (isPlainAt(i))
+            updateBroadphase(*bodies[i]);
+        else
+            predictOne(*bodies[i], nullptr, [&](btSoftBody& body) { predictByBullet(body, dt); });
+    }
+}
+
+// Runs the part of predictMotion() before the prediction.
 void SoftBodySolver::beginStep(btScalar dt, std::vector<StepObstacle>& obstacles)
 {
     m_work->m_listed = false;
@@ -185,28 +222,12 @@ void SoftBodySolver::beginStep(btScalar dt, std::vector<StepObstacle>& obstacles
     obstacles = wakeReached(motions);
     listPredicted();
     m_work->m_parts.m_mirrorMs = watch.lapMs();
-    recordVelocities();
+    reserveSubsteps();
     m_work->m_parts.m_readMs = watch.lapMs();
 }
 
-// Runs the part of predictMotion() after Bullet's.
-void SoftBodySolver::coverMotions(const std::vector<StepObstacle>& obstacles)
-{
-    Stopwatch watch;
-    for (int i = 0; i < m_softBodySet.size(); ++i)
-    {
-        const auto found = m_work->m_substeps.find(m_softBodySet[i]);
-        if (found != m_work->m_substeps.end() && m_softBodySet[i]->isActive())
-            found->second->afterPrediction(*m_softBodySet[i]);
-    }
-    m_work->m_parts.m_readMs += watch.lapMs();
-    for (btSoftBody* body : m_work->m_taken)
-        if (body->isActive()) coverMotion(*m_state, *body, obstacles);
-    m_work->m_parts.m_mirrorMs += watch.lapMs();
-}
-
 // Prepares the bodies whose links Drape solves in the coming step, and forgets all others.
-void SoftBodySolver::recordVelocities()
+void SoftBodySolver::reserveSubsteps()
 {
     auto& all = m_work->m_substeps;
     std::size_t solved = 0;
@@ -219,7 +240,7 @@ void SoftBodySolver::recordVelocities()
         if (isSolved && at == all.end()) at = all.emplace(&body, std::make_unique<SubstepBody>()).first;
         if (isSolved)
         {
-            at->second->beforePrediction(body);
+            at->second->reserve(body);
             ++solved;
         }
         else if (at != all.end())
@@ -244,12 +265,18 @@ void SoftBodySolver::forgetRemoved()
 // handle.
 void SoftBodySolver::leaveToBullet()
 {
-    for (int i = 0; i < m_softBodySet.size(); ++i)
+    const auto sizeOf = [this](std::size_t i)
     {
-        btSoftBody& body = *m_softBodySet[i];
-        SubstepBody* const substeps = m_work->substepsOf(body);
-        if (substeps && !substeps->canSolveNow(body, &m_state->threads())) substeps->leave(body);
-    }
+        const btSoftBody& body = *m_softBodySet[int(i)];
+        return m_work->substepsOf(body) ? static_cast<std::size_t>(body.m_nodes.size()) : 0;
+    };
+    const auto check = [this](std::size_t i, ThreadTeam* threads)
+    {
+        btSoftBody& body = *m_softBodySet[int(i)];
+        SubstepBody& substeps = *m_work->substepsOf(body);
+        if (!substeps.canSolveNow(body, threads)) substeps.leave(body);
+    };
+    forBodies(static_cast<std::size_t>(m_softBodySet.size()), m_state->threads(), sizeOf, check);
 }
 
 // Lists the bodies that Drape takes.
@@ -314,6 +341,23 @@ void SoftBodySolver::detect()
     work.m_parts.m_writeMs = watch.lapMs() - statistics.m_waitMs - (step.uploadMs() - uploadMs);
 }
 
+// Prepares the steps of all bodies whose links the core solves.
+void SoftBodySolver::Work::beginSubsteps(const btAlignedObjectArray<btSoftBody*>& bodies)
+{
+    const auto sizeOf = [&](std::size_t i)
+    {
+        const btSoftBody& body = *bodies[int(i)];
+        return substepsOf(body) && isSteppedBody(body) ? static_cast<std::size_t>(body.m_nodes.size()) : 0;
+    };
+    const auto begin = [&](std::size_t i, ThreadTeam* threads)
+    {
+        const btSoftBody& body = *bodies[int(i)];
+        BodyContacts* const contacts = contactsOf(body);
+        substepsOf(body)->begin(body, contacts ? &contacts->m_contacts : nullptr, threads);
+    };
+    forBodies(static_cast<std::size_t>(bodies.size()), m_threads, sizeOf, begin);
+}
+
 // Hands a body with a pair, or whose links the core solves, to the solver. Returns whether it is one.
 bool SoftBodySolver::Work::take(btSoftBody& body)
 {
@@ -323,8 +367,8 @@ bool SoftBodySolver::Work::take(btSoftBody& body)
     if (!contacts && !substeps) return false;
     if (substeps)
     {
-        substeps->begin(body, contacts ? &contacts->m_contacts : nullptr, m_rigidBodies, &m_threads);
         ClothContacts& cloth = contacts ? contacts->m_contacts : substeps->alone();
+        substeps->addRows(body, cloth.m_nodes, m_rigidBodies);
         m_ends.emplace_back(&body, &cloth.m_nodes);
         if (contacts || substeps->rigidRows())
             m_touched.push_back({&cloth, &substeps->substeps(), nullptr, substeps->rigidRows()});
@@ -347,6 +391,7 @@ void SoftBodySolver::solveBodies(StepParts& parts)
     work.m_rigidBodies.clear();
     work.m_solved.assign(static_cast<std::size_t>(m_softBodySet.size()), 0);
     Stopwatch watch;
+    work.beginSubsteps(m_softBodySet);
     for (int i = 0; i < m_softBodySet.size();)
     {
         if (work.take(*m_softBodySet[i]))
@@ -370,8 +415,10 @@ void SoftBodySolver::solveBodies(StepParts& parts)
         linksMs += links->ms();
     parts.m_solveMs = watch.lapMs() - linksMs;
     parts.m_bulletMs += linksMs;
-    for (const auto& end : work.m_ends)
-        SubstepBody::end(*end.second, *end.first, &m_state->threads());
+    forBodies(
+        work.m_ends.size(), m_state->threads(), [&](std::size_t i) { return work.m_ends[i].second->count(); },
+        [&](std::size_t i, ThreadTeam* threads)
+        { SubstepBody::end(*work.m_ends[i].second, *work.m_ends[i].first, threads); });
     work.m_rigidBodies.applyImpulses();
     parts.m_writeBackMs = watch.lapMs();
 }
@@ -461,7 +508,17 @@ void SoftBodySolver::solveConstraints(btScalar dt)
 void SoftBodySolver::updateSoftBodies()
 {
     Stopwatch watch;
-    btDefaultSoftBodySolver::updateSoftBodies();
-    if (m_work) m_state->m_statistics.m_normalsMs = watch.lapMs();
+    // Without a state Bullet's function does the same on this thread.
+    if (!m_work) return btDefaultSoftBodySolver::updateSoftBodies();
+    const auto sizeOf = [this](std::size_t i)
+    {
+        const btSoftBody& body = *m_softBodySet[int(i)];
+        return body.isActive() ? static_cast<std::size_t>(body.m_nodes.size()) : 0;
+    };
+    // Normals are written to the body alone, and nothing else is read: integrateMotion() of Bullet 3.24 only calls
+    // updateNormals().
+    forBodies(static_cast<std::size_t>(m_softBodySet.size()), m_work->m_threads, sizeOf,
+              [this](std::size_t i, ThreadTeam*) { m_softBodySet[int(i)]->integrateMotion(); });
+    m_state->m_statistics.m_normalsMs = watch.lapMs();
 }
 }  // namespace drape

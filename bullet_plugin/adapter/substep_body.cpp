@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 
+#include "bullet_plugin/adapter/body_jobs.h"
 #include "bullet_plugin/adapter/body_nodes.h"
 #include "bullet_plugin/core/solver/cloth_parts.h"
 #include "bullet_plugin/core/solver/link_strength.h"
@@ -11,9 +12,6 @@ namespace drape
 {
 namespace
 {
-// Minimum nodes or links for sharing a pass over them, and those of a range.
-constexpr std::size_t kLeastShared = 8192, kRange = 2048;
-
 std::size_t nodeCount(const btSoftBody& body)
 {
     return static_cast<std::size_t>(body.m_nodes.size());
@@ -24,15 +22,6 @@ std::ptrdiff_t nodeAt(const btSoftBody& body, const btSoftBody::Node* node)
 {
     const btSoftBody::Node* const first = body.m_nodes.size() > 0 ? &body.m_nodes[0] : nullptr;
     return node >= first && node < first + body.m_nodes.size() ? node - first : -1;
-}
-
-// Calls work(first, last) for ranges of `count` elements. threads: null for the caller alone.
-template <class Work>
-void forRanges(std::size_t count, ThreadTeam* threads, const Work& work)
-{
-    if (!threads || count < kLeastShared) return work(std::size_t(0), count);
-    threads->run((count + kRange - 1) / kRange,
-                 [&](std::size_t range) { work(range * kRange, std::min(count, (range + 1) * kRange)); });
 }
 
 // Returns how far the end of a free path in substeps lies from Bullet's prediction, per unit of acceleration, s².
@@ -73,7 +62,7 @@ bool SubstepBody::canSolveNow(const btSoftBody& body, ThreadTeam* threads)
     if (!fits(body) || reasonFromSettings(body)) return false;
     // Bullet's own algorithms found that it touches a soft body, or itself.
     if (body.m_scontacts.size() > 0 || RigidBodies::reasonForBullet(body)) return false;
-    return readTopology(body, threads);
+    return readLinks(body, threads);
 }
 
 int SubstepBody::substepsOf(const btSoftBody& body)
@@ -81,31 +70,44 @@ int SubstepBody::substepsOf(const btSoftBody& body)
     return std::max(kLeastSubsteps, body.m_cfg.piterations);
 }
 
-void SubstepBody::beforePrediction(const btSoftBody& body)
+void SubstepBody::reserve(const btSoftBody& body)
 {
     m_isPredicted = false;
-    m_velocities.clear();
-    if (!body.isActive()) return;
-    m_velocities.resize(nodeCount(body));
-    for (std::size_t i = 0; i < m_velocities.size(); ++i)
-        m_velocities[i] = body.m_nodes[static_cast<int>(i)].m_v;
+    const std::size_t count = body.isActive() ? nodeCount(body) : 0;
+    m_velocities.resize(count);
+    if (count == 0) return;
+    m_accelerations.resize(count);
+    m_predictions.resize(count);
 }
 
-void SubstepBody::afterPrediction(btSoftBody& body)
+void SubstepBody::beforePrediction(const btSoftBody& body, ThreadTeam* threads)
+{
+    if (m_velocities.size() != nodeCount(body)) return;
+    const auto record = [&](std::size_t first, std::size_t last)
+    {
+        for (std::size_t i = first; i < last; ++i)
+            m_velocities[i] = body.m_nodes[static_cast<int>(i)].m_v;
+    };
+    forRanges(m_velocities.size(), threads, record);
+}
+
+void SubstepBody::afterPrediction(btSoftBody& body, ThreadTeam* threads)
 {
     if (!(body.m_sst.sdt > 0) || m_velocities.size() != nodeCount(body)) return;
     const btScalar shift = shiftOf(body), perSecond = body.m_sst.isdt;
-    m_accelerations.resize(m_velocities.size());
-    m_predictions.resize(m_velocities.size());
     m_isPredicted = true;
-    for (std::size_t i = 0; i < m_accelerations.size(); ++i)
+    const auto bring = [&](std::size_t first, std::size_t last)
     {
-        btSoftBody::Node& node = body.m_nodes[static_cast<int>(i)];
-        const btVector3 acceleration = (node.m_v - m_velocities[i]) * perSecond;
-        m_accelerations[i] = vec3Of(acceleration);
-        node.m_x += acceleration * shift;
-        m_predictions[i] = {node.m_x, node.m_v * body.m_sst.sdt + acceleration * shift};
-    }
+        for (std::size_t i = first; i < last; ++i)
+        {
+            btSoftBody::Node& node = body.m_nodes[static_cast<int>(i)];
+            const btVector3 acceleration = (node.m_v - m_velocities[i]) * perSecond;
+            m_accelerations[i] = vec3Of(acceleration);
+            node.m_x += acceleration * shift;
+            m_predictions[i] = {node.m_x, node.m_v * body.m_sst.sdt + acceleration * shift};
+        }
+    };
+    forRanges(m_velocities.size(), threads, bring);
 }
 
 bool SubstepBody::fits(const btSoftBody& body) const
@@ -135,90 +137,103 @@ void SubstepBody::cutLinks(const btSoftBody& body)
 // Sorts the links for sweeps.
 void SubstepBody::sortLinks()
 {
-    m_isSorted = false;
-    for (LinkNodes& link : m_links)
+    m_isSorted = m_isSet = false;
+    std::vector<LinkNodes> links;
+    links.reserve(m_links.size());
+    for (const LinkInput& link : m_links)
     {
         const int nodes[3] = {static_cast<int>(link.m_nodes[0]), static_cast<int>(link.m_nodes[1]), -1};
-        link.m_group = static_cast<std::uint32_t>(m_parts.groupOf(nodes));
+        const std::uint32_t group = static_cast<std::uint32_t>(m_parts.groupOf(nodes));
+        links.push_back({{link.m_nodes[0], link.m_nodes[1]}, group});
     }
-    m_substeps.links().build(m_parts.nodeCount(), m_parts.leafCount(), m_links, m_parts.revision());
+    m_substeps.links().build(m_parts.nodeCount(), m_parts.leafCount(), links, m_parts.revision());
     m_isSorted = true;
 }
 
-// Reads which nodes the links join; sorts them again if that changed. Returns false if one is another body's.
-bool SubstepBody::readTopology(const btSoftBody& body, ThreadTeam* threads)
+// Reads the links; sorts or sets those of the sweeps again if anything changed. Returns false if one joins another
+// body's node.
+bool SubstepBody::readLinks(const btSoftBody& body, ThreadTeam* threads)
 {
     const std::size_t count = static_cast<std::size_t>(body.m_links.size());
     std::atomic<bool> isNew{!m_isSorted || m_links.size() != count || m_parts.nodeCount() != nodeCount(body)};
-    std::atomic<bool> joinsOthers{false};
+    std::atomic<bool> isOther{!m_isSet || m_iterations != body.m_cfg.piterations}, joinsOthers{false};
     m_links.resize(count);
     const auto read = [&](std::size_t first, std::size_t last)
     {
-        bool changed = false, foreign = false;
+        bool moved = false, changed = false, foreign = false;
         for (std::size_t i = first; i < last; ++i)
         {
+            const btSoftBody::Link& link = body.m_links[static_cast<int>(i)];
+            LinkInput& known = m_links[i];
             for (int k = 0; k < 2; ++k)
             {
-                const std::ptrdiff_t at = nodeAt(body, body.m_links[static_cast<int>(i)].m_n[k]);
+                const std::ptrdiff_t at = nodeAt(body, link.m_n[k]);
                 const std::uint32_t node = static_cast<std::uint32_t>(at);
                 foreign = foreign || at < 0;
-                changed = changed || m_links[i].m_nodes[k] != node;
-                m_links[i].m_nodes[k] = node;
+                moved = moved || known.m_nodes[k] != node;
+                known.m_nodes[k] = node;
             }
+            const float c0 = float(link.m_c0), c1 = float(link.m_c1), stiffness = float(link.m_material->m_kLST);
+            changed = changed || known.m_c0 != c0 || known.m_c1 != c1 || known.m_stiffness != stiffness;
+            known.m_c0 = c0;
+            known.m_c1 = c1;
+            known.m_stiffness = stiffness;
         }
-        if (changed) isNew = true;
+        if (moved) isNew = true;
+        if (changed) isOther = true;
         if (foreign) joinsOthers = true;
     };
     forRanges(count, threads, read);
     m_isSorted = !isNew;
+    m_isSet = !isNew && !isOther;
     if (joinsOthers) return false;
     if (isNew) cutLinks(body);
+    if (!m_isSet) setLinks(body, threads);
     return true;
 }
 
-// Reads lengths and strengths of the links, whose nodes have their starts.
-void SubstepBody::readLinks(const btSoftBody& body, ThreadTeam* threads)
+// Gives the sweeps the links' lengths and strengths.
+void SubstepBody::setLinks(const btSoftBody& body, ThreadTeam* threads)
 {
-    std::atomic<bool> isNew{false};
-    const auto read = [&](std::size_t first, std::size_t last)
+    const auto set = [&](std::size_t first, std::size_t last)
     {
         // Neighbouring links mostly have one material.
-        btScalar stiffness = -1;
+        float stiffness = -1;
         double factor = 0;
-        bool changed = false;
         for (std::size_t i = first; i < last; ++i)
         {
-            const btSoftBody::Link& link = body.m_links[static_cast<int>(i)];
-            if (link.m_material->m_kLST != stiffness)
+            const LinkInput& link = m_links[i];
+            if (link.m_stiffness != stiffness)
             {
-                stiffness = link.m_material->m_kLST;
+                stiffness = link.m_stiffness;
                 const double share =
                     visitShare(stiffness, body.m_cfg.piterations, substepsOf(body), Substeps::kLinkSweeps);
                 factor = stiffness > 0 ? share / double(stiffness) : 0;
             }
             // Bullet's m_c0 is the sum of the inverse masses divided by the stiffness.
-            const bool acts = link.m_c0 > 0;
-            const float strength = acts ? static_cast<float>(factor / double(link.m_c0)) : 0.0f;
-            const Vec3 apart = vec3Of(link.m_n[1]->m_q - link.m_n[0]->m_q);
-            const bool isSet = m_substeps.links().set(i, apart, static_cast<float>(link.m_c1), strength);
-            changed = changed || isSet;
+            const float strength = link.m_c0 > 0 ? static_cast<float>(factor / double(link.m_c0)) : 0.0f;
+            m_substeps.links().set(i, link.m_c1, strength);
         }
-        if (changed) isNew = true;
     };
-    forRanges(m_links.size(), threads, read);
-    if (isNew) m_substeps.links().changed();
+    forRanges(m_links.size(), threads, set);
+    m_substeps.links().changed();
+    m_iterations = body.m_cfg.piterations;
+    m_isSet = true;
 }
 
-void SubstepBody::begin(const btSoftBody& body, ClothContacts* recorded, RigidBodies& bodies, ThreadTeam* threads)
+void SubstepBody::begin(const btSoftBody& body, ClothContacts* recorded, ThreadTeam* threads)
 {
     // Links and contacts have the same parts. A cloth of one part is the same however it is cut.
     if (recorded && recorded->m_parts->revision() != m_parts.revision())
     {
         const bool isNew = std::max(recorded->m_parts->leafCount(), m_parts.leafCount()) > 1;
         m_parts = *recorded->m_parts;
-        if (isNew) sortLinks();
+        if (isNew)
+        {
+            sortLinks();
+            setLinks(body, threads);
+        }
     }
-    readLinks(body, threads);
     SolverNodes& nodes = recorded ? recorded->m_nodes : m_alone.m_nodes;
     if (!recorded)
     {
@@ -227,15 +242,24 @@ void SubstepBody::begin(const btSoftBody& body, ClothContacts* recorded, RigidBo
         m_alone.m_limit.startStep(m_noFaces);
         m_alone.m_perSecond = static_cast<float>(body.m_sst.isdt);
     }
-    for (std::size_t i = 0; i < nodes.count(); ++i)
+    const auto read = [&](std::size_t first, std::size_t last)
     {
-        const btSoftBody::Node& node = body.m_nodes[static_cast<int>(i)];
-        if (!recorded) recordPath(node, i, nodes);
-        // The prediction's way is more precise than the difference of two positions.
-        if (node.m_x == m_predictions[i].m_end) nodes.setEnd(i, vec3Of(m_predictions[i].m_way), nodes.velocity(i));
-    }
+        for (std::size_t i = first; i < last; ++i)
+        {
+            const btSoftBody::Node& node = body.m_nodes[static_cast<int>(i)];
+            if (!recorded) recordPath(node, i, nodes);
+            // The prediction's way is more precise than the difference of two positions.
+            if (node.m_x == m_predictions[i].m_end) nodes.setEnd(i, vec3Of(m_predictions[i].m_way), nodes.velocity(i));
+        }
+    };
+    forRanges(nodes.count(), threads, read);
+    m_substeps.links().start(nodes.paths(), threads);
     m_substeps.prepare(static_cast<float>(body.m_sst.sdt), substepsOf(body), static_cast<float>(body.m_cfg.kDP),
                        m_accelerations);
+}
+
+void SubstepBody::addRows(const btSoftBody& body, const SolverNodes& nodes, RigidBodies& bodies)
+{
     m_rigidRows.clear();
     bodies.addRows(body, nodes, m_rigidRows);
 }

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "BulletSoftBody/btSoftBody.h"
@@ -25,14 +26,17 @@ public:
     // Returns the same without a look at the links.
     static const char* reasonFromSettings(const btSoftBody& body);
     // Returns whether this class can solve the step that has been predicted. Contacts of Bullet's own algorithms count,
-    // too. Reads which nodes the links join. threads: null for the caller alone.
+    // too. Reads the links. threads: null for the caller alone.
     bool canSolveNow(const btSoftBody& body, ThreadTeam* threads);
 
-    // Records the velocities before the body's predictMotion(). Does nothing for a body that sleeps.
-    void beforePrediction(const btSoftBody& body);
-    // Brings the predicted positions to where substeps take free nodes. Call after predictMotion(), with the same
-    // nodes.
-    void afterPrediction(btSoftBody& body);
+    // Makes room for a step of the body. A body that sleeps needs none.
+    void reserve(const btSoftBody& body);
+    // Records the velocities before the body's prediction, after reserve(). Allocates no memory. threads: null for the
+    // caller alone.
+    void beforePrediction(const btSoftBody& body, ThreadTeam* threads);
+    // Brings the predicted positions to where substeps take free nodes. Call after the prediction, with the same nodes.
+    // Allocates no memory.
+    void afterPrediction(btSoftBody& body, ThreadTeam* threads);
     // Returns whether the body has the nodes of the prediction.
     bool fits(const btSoftBody& body) const;
     // Leaves the step to Bullet, with Bullet's prediction.
@@ -44,12 +48,14 @@ public:
     static int substepsOf(const btSoftBody& body);
 
     // Prepares the solver's step, after canSolveNow(). recorded: the cloth with the paths that were recorded; null:
-    // alone(), whose paths are recorded now. bodies: gets the rigid bodies that the body touches or hangs on.
-    void begin(const btSoftBody& body, ClothContacts* recorded, RigidBodies& bodies, ThreadTeam* threads);
+    // alone(), whose paths are recorded now.
+    void begin(const btSoftBody& body, ClothContacts* recorded, ThreadTeam* threads);
+    // Adds rows for the rigid bodies that the body touches or hangs on, after begin(). nodes: those of begin().
+    void addRows(const btSoftBody& body, const SolverNodes& nodes, RigidBodies& bodies);
     // The cloth of a body without pairs.
     ClothContacts& alone() { return m_alone; }
     Substeps& substeps() { return m_substeps; }
-    // Returns the rows of the last begin(); null if there are none.
+    // Returns the rows of the last addRows(); null if there are none.
     RigidRows* rigidRows() { return m_rigidRows.empty() ? nullptr : &m_rigidRows; }
     // Gives the body the solver's result. threads: null for the caller alone.
     static void end(const SolverNodes& nodes, btSoftBody& body, ThreadTeam* threads);
@@ -63,17 +69,26 @@ private:
         btVector3 m_end, m_way;
     };
 
-    bool readTopology(const btSoftBody& body, ThreadTeam* threads);
-    void readLinks(const btSoftBody& body, ThreadTeam* threads);
+    // A link as Bullet has it: its nodes' indices, Bullet's m_c0 and m_c1, and the stiffness of its material.
+    struct LinkInput
+    {
+        std::uint32_t m_nodes[2];
+        float m_c0, m_c1, m_stiffness;
+    };
+
+    bool readLinks(const btSoftBody& body, ThreadTeam* threads);
     void cutLinks(const btSoftBody& body);
     void sortLinks();
+    void setLinks(const btSoftBody& body, ThreadTeam* threads);
 
     bool m_isPredicted = false;
     std::vector<btVector3> m_velocities;  // before the prediction, m/s
     std::vector<Vec3> m_accelerations;    // m/s², constant in the step
     std::vector<Prediction> m_predictions;
-    std::vector<LinkNodes> m_links;  // links as sorted for sweeps
-    bool m_isSorted = false;         // false if memory ran out while the links were sorted
+    std::vector<LinkInput> m_links;  // by link, as last read
+    int m_iterations = 0;            // piterations when they were set
+    bool m_isSorted = false;         // the links' nodes are those of the sweeps
+    bool m_isSet = false;            // the links' lengths and strengths are, too
     ClothParts m_parts;              // by which they are sorted
     ClothContacts m_alone;           // for steps without pairs
     ClothFaces m_noFaces;

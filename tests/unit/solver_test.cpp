@@ -93,6 +93,9 @@ TEST(LinkSweep, GivesTheSameBitsOnAnyNumberOfThreads)
     SCOPED_TRACE("seed 700");
     const Nodes start = randomNodes(kNodes, random);
     const std::vector<LinkNodes> links = randomLinks(60000, kNodes, kLeaves, random);
+    std::vector<NodePath> paths(kNodes);
+    for (NodePath& path : paths)
+        path.m_start = vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
     Nodes expected;
     for (const unsigned threads : {0u, 1u, 2u, 7u})
     {
@@ -101,8 +104,8 @@ TEST(LinkSweep, GivesTheSameBitsOnAnyNumberOfThreads)
         sweep.build(kNodes, kLeaves, links);
         ASSERT_EQ(sweep.linkCount(), links.size());
         for (std::size_t i = 0; i < links.size(); ++i)
-            sweep.set(i, kTogether, 0.01f * float(1 + i % 7),
-                      strengthOf(start[links[i].m_nodes[0]], start[links[i].m_nodes[1]]));
+            sweep.set(i, 0.01f * float(1 + i % 7), strengthOf(start[links[i].m_nodes[0]], start[links[i].m_nodes[1]]));
+        sweep.start(paths.data(), threads == 0 ? nullptr : &team);
         Nodes nodes = start;
         for (int i = 0; i < 5; ++i)
             sweep.sweep(nodes.data(), threads == 0 ? nullptr : &team);
@@ -130,7 +133,7 @@ TEST(LinkSweep, VisitsEachLinkOnceAsBulletDoes)
         {
             const float restSquared = i % 4 == 0 ? 0.0f : 0.3f;
             SolverNode &a = expected[2 * i + 1], &b = expected[2 * i];
-            sweep.set(i, kTogether, restSquared, strengthOf(a, b));
+            sweep.set(i, restSquared, strengthOf(a, b));
             visitAlone(a, b, restSquared);
         }
         sweep.sweep(nodes.data(), nullptr);
@@ -162,7 +165,7 @@ TEST(LinkSweep, KeepsTheCentreOfMass)
     LinkSweep sweep;
     sweep.build(kNodes, kLeaves, randomLinks(9000, kNodes, kLeaves, random));
     for (std::size_t i = 0; i < sweep.linkCount(); ++i)
-        sweep.set(i, kTogether, 0.1f, 0.5f);
+        sweep.set(i, 0.1f, 0.5f);
     for (int i = 0; i < 10; ++i)
         sweep.sweep(nodes.data(), nullptr);
     // A visit rounds six coordinates by 2^-25 m at most; errors of either sign add up like their root.
@@ -185,7 +188,7 @@ TEST(LinkSweep, HandlesANodeWithAHundredLinks)
     for (SolverNode& node : nodes)
         node.m_inverseMass = 1;
     for (std::size_t i = 0; i < kLinks; ++i)
-        sweep.set(i, kTogether, 1, 0.5f);
+        sweep.set(i, 1, 0.5f);
     for (int i = 0; i < 400; ++i)
         sweep.sweep(nodes.data(), nullptr);
     for (std::size_t i = 1; i <= kLinks; ++i)
@@ -199,7 +202,7 @@ TEST(LinkSweep, LeavesLinksWithoutStrengthOrLengthAlone)
     const Nodes before = nodes;
     LinkSweep sweep;
     sweep.build(4, 1, {{{0, 1}, 1}, {{2, 3}, 1}});
-    sweep.set(0, kTogether, 0, 0.5f);  // both nodes at one position, and no length at rest
+    sweep.set(0, 0, 0.5f);  // both nodes at one position, and no length at rest
     sweep.sweep(nodes.data(), nullptr);
     EXPECT_TRUE(sameBits(nodes, before));
 }

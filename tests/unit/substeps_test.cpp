@@ -54,8 +54,9 @@ void linkNeighbours(const SolverNodes& nodes, const std::vector<Vec3>& places, L
     {
         const std::uint32_t a = links[i].m_nodes[0], b = links[i].m_nodes[1];
         const float mobility = nodes.inverseMass(a) + nodes.inverseMass(b);
-        sweep.set(i, vec3Sub(places[b], places[a]), 1e-4f, mobility > 0 ? 1 / mobility : 0.0f);
+        sweep.set(i, 1e-4f, mobility > 0 ? 1 / mobility : 0.0f);
     }
+    sweep.start(nodes.paths(), nullptr);
 }
 }  // namespace
 

@@ -15,6 +15,9 @@ namespace
 // Minimum links for sharing a sweep among threads: it takes 10 µs alone.
 constexpr std::size_t kLeastShared = 4096;
 
+// Blocks that a thread starts per turn: 10 µs.
+constexpr std::size_t kBlocksPerJob = 1024;
+
 using Lanes = float __attribute__((vector_size(16)));
 
 // Returns four numbers of two vectors: those of the first are counted from 0, of the second from 4.
@@ -122,6 +125,28 @@ void LinkSweep::build(std::size_t nodeCount, std::size_t leafCount, const std::v
     }
     for (std::size_t group = 1; group < m_firsts.size(); ++group)
         m_firsts[group] = std::max(m_firsts[group], m_firsts[group - 1]);
+}
+
+void LinkSweep::start(const NodePath* paths, ThreadTeam* threads)
+{
+    const auto startRange = [&](std::size_t range)
+    {
+        for (std::size_t i = range * kBlocksPerJob; i < std::min(m_blocks.size(), (range + 1) * kBlocksPerJob); ++i)
+        {
+            Block& block = m_blocks[i];
+            for (std::size_t lane = 0; lane < kWidth; ++lane)
+            {
+                const Vec3 apart = vec3Sub(paths[block.m_second[lane]].m_start, paths[block.m_first[lane]].m_start);
+                block.m_apart[0][lane] = apart.x;
+                block.m_apart[1][lane] = apart.y;
+                block.m_apart[2][lane] = apart.z;
+            }
+        }
+    };
+    const std::size_t ranges = (m_blocks.size() + kBlocksPerJob - 1) / kBlocksPerJob;
+    if (threads && linkCount() >= kLeastShared) return threads->run(ranges, startRange);
+    for (std::size_t range = 0; range < ranges; ++range)
+        startRange(range);
 }
 
 void LinkSweep::visitGroup(std::size_t group, SolverNode* nodes) const

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "bullet_plugin/core/threads/thread_team.h"
-#include "kernels/shared/solver.h"
+#include "kernels/lib/solver_node.h"
 #include "revision.h"
 
 namespace drape
@@ -36,21 +36,15 @@ public:
 
     std::size_t leafCount() const { return m_leafCount; }
     std::size_t linkCount() const { return m_laneOf.size(); }
-    // Sets a link, in the order of build(), for the sweeps of a step. apart: m, from the first node to the second at
-    // the step's start. restSquared: m². strength: kg, the share of a violation that a visit corrects, divided by the
-    // sum of the nodes' inverse masses; 0 for a link without effect.
-    // Returns whether length or strength changed; call changed() then. Several threads may set links.
-    bool set(std::size_t link, Vec3 apart, float restSquared, float strength)
+    // Sets a link, in the order of build(); call changed() after the last. restSquared: m². strength: kg, the share of
+    // a violation that a visit corrects, divided by the sum of the nodes' inverse masses; 0 for a link without effect.
+    // Several threads may set links.
+    void set(std::size_t link, float restSquared, float strength)
     {
         Block& block = m_blocks[m_laneOf[link] / kWidth];
         const std::size_t lane = m_laneOf[link] % kWidth;
-        const bool isNew = block.m_restSquared[lane] != restSquared || block.m_strength[lane] != strength;
-        block.m_apart[0][lane] = apart.x;
-        block.m_apart[1][lane] = apart.y;
-        block.m_apart[2][lane] = apart.z;
         block.m_restSquared[lane] = restSquared;
         block.m_strength[lane] = strength;
-        return isNew;
     }
     void changed() { m_isNew = true; }
 
@@ -75,6 +69,9 @@ public:
         }
     }
 
+    // Begins a step: takes each link's vector from its first node to the second at the starts of their paths. threads:
+    // null for the caller alone.
+    void start(const NodePath* paths, ThreadTeam* threads);
     // Visits every link once. threads: null for the caller alone.
     void sweep(SolverNode* nodes, ThreadTeam* threads);
 

@@ -132,7 +132,7 @@ struct StepParts
 {
     // Time for pairs, mirrors of bodies and meshes, motions of obstacles, and bounds beside moving obstacles.
     double m_mirrorMs = 0;
-    // Time of Bullet's prediction: forces, predicted positions, bounds and node trees.
+    // Time of the prediction: forces, predicted positions, bounds, node trees, and velocities before it.
     double m_predictMs = 0;
     // Time for copying nodes for the detection and for enqueueing.
     double m_uploadMs = 0;
@@ -146,7 +146,7 @@ struct StepParts
     double m_narrowMs = 0;
     // Time for sorting contacts by body and for ending paths at the first impact, without waits and uploads.
     double m_writeMs = 0;
-    // Time for reading velocities, forces, links and nodes of bodies whose links Drape solves.
+    // Time for reading links and nodes of bodies whose links Drape solves.
     double m_readMs = 0;
     // Time for links in substeps, contact sweeps and motion limits. The sweeps between Bullet's iterations count, too.
     double m_solveMs = 0;

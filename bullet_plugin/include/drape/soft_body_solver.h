@@ -51,10 +51,9 @@ private:
     void listTaken();
     std::vector<StepObstacle> wakeReached(KinematicMotions& motions);
     void listPredicted();
-    void recordVelocities();
+    void reserveSubsteps();
     void forgetRemoved();
     void leaveToBullet();
-    void coverMotions(const std::vector<StepObstacle>& obstacles);
     void detect();
     void solveBodies(StepParts& times);
     void closeStrayed(const std::vector<BodyContacts*>& bodies);

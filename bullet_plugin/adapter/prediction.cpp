@@ -1,0 +1,158 @@
+#include "bullet_plugin/adapter/prediction.h"
+
+#include <atomic>
+#include <cmath>
+#include <cstddef>
+#include <mutex>
+
+#include "BulletCollision/BroadphaseCollision/btBroadphaseInterface.h"
+#include "bullet_plugin/adapter/body_jobs.h"
+
+namespace drape
+{
+namespace
+{
+struct Bounds
+{
+    btVector3 m_low = btVector3(SIMD_INFINITY, SIMD_INFINITY, SIMD_INFINITY), m_high = -m_low;
+
+    // Ignores coordinates that are not a number.
+    void add(const Bounds& other)
+    {
+        for (int axis = 0; axis < 3; ++axis)
+        {
+            if (other.m_low[axis] < m_low[axis]) m_low[axis] = other.m_low[axis];
+            if (other.m_high[axis] > m_high[axis]) m_high[axis] = other.m_high[axis];
+        }
+    }
+};
+
+// The values of a step that all nodes of a body share.
+struct NodeStep
+{
+    explicit NodeStep(const btSoftBody& body)
+        : m_dt(body.m_sst.sdt),
+          m_gravity(body.m_worldInfo->m_gravity * m_dt),
+          m_mostChange(body.m_worldInfo->m_maxDisplacement / m_dt),
+          m_state(body.m_sst)
+    {
+    }
+
+    // Moves the node and fits its leaf of the tree. Returns whether the leaf changed.
+    bool predict(btSoftBody::Node& node) const
+    {
+        if (node.m_im > 0) node.m_v += m_gravity;
+        node.m_q = node.m_x;
+        btVector3 change = node.m_f * node.m_im * m_dt;
+        for (int axis = 0; axis < 3; ++axis)
+        {
+            if (change[axis] > m_mostChange) change[axis] = m_mostChange;
+            if (change[axis] < -m_mostChange) change[axis] = -m_mostChange;
+        }
+        node.m_v += change;
+        node.m_x += node.m_v * m_dt;
+        node.m_f = btVector3(0, 0, 0);
+        if (!node.m_leaf) return false;
+        btDbvtVolume volume = btDbvtVolume::FromCR(node.m_x, m_state.radmrg);
+        if (node.m_leaf->volume.Contain(volume)) return false;
+        volume.Expand(btVector3(m_state.updmrg, m_state.updmrg, m_state.updmrg));
+        volume.SignedExpand(node.m_v * m_state.velmrg);
+        node.m_leaf->volume = volume;
+        return true;
+    }
+
+    btScalar m_dt;
+    btVector3 m_gravity;
+    btScalar m_mostChange;
+    const btSoftBody::SolverState& m_state;
+};
+
+btDbvtNode* firstLeafOf(btDbvtNode* node)
+{
+    while (node->isinternal())
+        node = node->childs[0];
+    return node;
+}
+
+// Fits the volumes of inner nodes to the leaves, from the leaves up.
+void refit(btDbvt& tree)
+{
+    if (!tree.m_root) return;
+    btDbvtNode* node = firstLeafOf(tree.m_root);
+    while (btDbvtNode* const parent = node == tree.m_root ? nullptr : node->parent)
+    {
+        if (node == parent->childs[0])
+        {
+            node = firstLeafOf(parent->childs[1]);
+            continue;
+        }
+        Merge(parent->childs[0]->volume, parent->childs[1]->volume, parent->volume);
+        node = parent;
+    }
+}
+
+void setBounds(btSoftBody& body, const Bounds& bounds)
+{
+    body.m_bounds[0] = body.m_bounds[1] = btVector3(0, 0, 0);
+    if (body.m_nodes.size() == 0) return;
+    const btScalar margin = body.getCollisionShape()->getMargin();
+    const btVector3& first = body.m_nodes[0].m_x;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+        // Bullet compares with the first node: bounds are no number where it is none.
+        const bool isNumber = first[axis] == first[axis];
+        body.m_bounds[0][axis] = (isNumber ? bounds.m_low[axis] : first[axis]) - margin;
+        body.m_bounds[1][axis] = (isNumber ? bounds.m_high[axis] : first[axis]) + margin;
+    }
+}
+}  // namespace
+
+bool isPlain(const btSoftBody& body, btScalar dt)
+{
+    const btSoftBody::Config& config = body.m_cfg;
+    const bool isPushed = config.kLF > 0 || config.kDG > 0 || config.kPR != 0 || config.kVC > 0;
+    return dt > 0 && config.timescale > 0 && !isPushed && !body.m_bUpdateRtCst && !body.m_pose.m_bframe &&
+           body.m_clusters.size() == 0 && body.m_fdbvt.empty() && !body.m_reducedModel && body.m_worldInfo;
+}
+
+void predictPlain(btSoftBody& body, btScalar dt, ThreadTeam* threads)
+{
+    body.m_sst.sdt = dt * body.m_cfg.timescale;
+    body.m_sst.isdt = 1 / body.m_sst.sdt;
+    body.m_sst.velmrg = body.m_sst.sdt * 3;
+    body.m_sst.radmrg = body.getCollisionShape()->getMargin();
+    body.m_sst.updmrg = body.m_sst.radmrg * btScalar(0.25);
+    const NodeStep step(body);
+    std::atomic<bool> leavesChanged{false};
+    std::mutex mutex;
+    Bounds all;
+    const auto predict = [&](std::size_t first, std::size_t last)
+    {
+        bool changed = false;
+        Bounds bounds;
+        for (std::size_t i = first; i < last; ++i)
+        {
+            btSoftBody::Node& node = body.m_nodes[static_cast<int>(i)];
+            changed = step.predict(node) || changed;
+            bounds.add({node.m_x, node.m_x});
+        }
+        if (changed) leavesChanged = true;
+        const std::lock_guard<std::mutex> lock(mutex);
+        all.add(bounds);
+    };
+    forRanges(static_cast<std::size_t>(body.m_nodes.size()), threads, predict);
+    setBounds(body, all);
+    if (leavesChanged) refit(body.m_ndbvt);
+    body.m_rcontacts.resizeNoInitialize(0);
+    body.m_scontacts.resizeNoInitialize(0);
+    body.m_ndbvt.optimizeIncremental(1);
+    body.m_cdbvt.optimizeIncremental(1);
+}
+
+void updateBroadphase(btSoftBody& body)
+{
+    if (body.m_nodes.size() == 0 || !body.getBroadphaseHandle()) return;
+    body.m_worldInfo->m_broadphase->setAabb(body.getBroadphaseHandle(), body.m_bounds[0], body.m_bounds[1],
+                                            body.m_worldInfo->m_dispatcher);
+}
+}  // namespace drape
