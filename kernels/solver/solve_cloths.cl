@@ -42,6 +42,7 @@ typedef struct Sweep
 {
     uint m_stage;
     float m_passed;       // share of the step that has passed
+    float m_tolerated;    // m, violation that a projection leaves
     float m_slack;        // m, bound on how far levels lie above those at the step's end
     float m_relaxation;   // share of a violation that a projection corrects
     uint m_actingSweeps;  // over the contacts of a level that act, after its edges
@@ -341,7 +342,7 @@ static int projectContact(const Solve* solve, const SolveFeature* feature, const
         acting.m_row.m_held = vec3(0.0f, 0.0f, 0.0f);
     }
     Vec3 shift;
-    if (!pushRow(&acting.m_row, way, sweep->m_passed, sweep->m_relaxation, worst, &shift)) return 0;
+    if (!pushRow(&acting.m_row, way, sweep->m_passed, sweep->m_tolerated, sweep->m_relaxation, worst, &shift)) return 0;
     const Vec3 held = acting.m_row.m_held;
     ((__global float4*)(solve->m_acting + index))[2] = (float4)(held.x, held.y, held.z, acting.m_row.m_multiplier);
     solve->m_acting[index].m_pushed = 1;
@@ -705,6 +706,7 @@ static void runSubstep(const Solve* solve, const uint substep, __local uint* sha
     sweep.m_stage = substep + 1;
     sweep.m_passed = (float)(substep + 1) / (float)cloth->m_substeps;
     sweep.m_slack = (1.0f - sweep.m_passed) * cloth->m_retreat;
+    sweep.m_tolerated = 0.0f;
     sweep.m_relaxation = DRAPE_TURN_RELAXATION;
     sweep.m_actingSweeps = cloth->m_actingSweeps;
     for (uint i = 0; i < cloth->m_linkSweeps; ++i)
@@ -731,6 +733,7 @@ static uint closeContacts(const Solve* solve, __local uint* shared)
     Sweep sweep;
     sweep.m_stage = cloth->m_substeps + 1;
     sweep.m_passed = 1.0f;
+    sweep.m_tolerated = cloth->m_tolerated;
     sweep.m_slack = 0.0f;
     sweep.m_relaxation = 1.0f;
     sweep.m_actingSweeps = 0;
@@ -817,7 +820,14 @@ DRAPE_RARE_FUNCTION void solveCloth(const SolveLayout* layout, __global const So
     beginStep(&solve);
     for (uint i = 0; i < cloth->m_substeps; ++i)
         runSubstep(&solve, i, shared);
-    forAll(i, cloth->m_nodes.m_count) nodeRemember(solve.m_nodes + i, solve.m_states + i);
+    // See StepSolver::settle().
+    const int settles = cloth->m_rests && cloth->m_features.m_count > 0;
+    forAll(i, cloth->m_nodes.m_count)
+    {
+        if (settles && solve.m_paths[i].m_inverseMass > 0.0f)
+            nodeSettle(solve.m_nodes + i, solve.m_states + i, solve.m_accelerations[i], cloth->m_perStep);
+        nodeRemember(solve.m_nodes + i, solve.m_states + i);
+    }
     syncNodes();
     applyLimits(&solve, shared);
     const uint sweeps = cloth->m_features.m_count > 0 ? closeContacts(&solve, shared) : 0;
