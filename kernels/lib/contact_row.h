@@ -35,16 +35,17 @@ DRAPE_FUNCTION float rowViolation(const ContactRow* row, const DRAPE_NODE_SPACE 
 
 // Computes the push that makes the row hold, or takes back an earlier push that is not needed any more. Friction
 // removes the point's motion since the step's start along the surface, relative to the obstacle, up to Coulomb's bound.
-// way: m, of the row's point. relaxation: share of the violation that is corrected. Returns whether there is anything
-// to do; `worst` grows to the violation that a push can correct. shift: kg m; a node moves by its share of it. A row
-// with NaN does nothing.
-DRAPE_FUNCTION int pushRow(ContactRow* row, Vec3 way, float passed, float relaxation, float* worst, Vec3* shift)
+// way: m, of the row's point. tolerated: m, violation that remains. relaxation: share of the rest that is corrected.
+// Returns whether there is anything to do; `worst` grows to the violation that a push can correct. shift: kg m; a node
+// moves by its share of it. A row with NaN does nothing.
+DRAPE_FUNCTION int pushRow(ContactRow* row, Vec3 way, float passed, float tolerated, float relaxation, float* worst,
+                           Vec3* shift)
 {
     const Vec3 normal = row->m_normal;
     const float along = vec3Dot(normal, way);
-    const float violation = row->m_level - (1.0f - passed) * row->m_advance - along;
+    const float violation = row->m_level - (1.0f - passed) * row->m_advance - along - tolerated;
     if (!(violation > 0.0f) && !(row->m_multiplier > 0.0f)) return 0;
-    *worst = drapeMax(*worst, violation * row->m_mended);
+    *worst = drapeMax(*worst, (violation + tolerated) * row->m_mended);
     const float pushed = drapeMax(0.0f, row->m_multiplier + relaxation * violation * row->m_inverseMobility);
     const Vec3 slid = vec3Sub(vec3AddScaled(way, normal, -along), vec3Scale(row->m_carried, passed));
     Vec3 held = vec3AddScaled(row->m_held, slid, -row->m_inverseMobility);
@@ -57,11 +58,11 @@ DRAPE_FUNCTION int pushRow(ContactRow* row, Vec3 way, float passed, float relaxa
 }
 
 // Pushes the row's nodes; see pushRow().
-DRAPE_FUNCTION int projectRow(ContactRow* row, DRAPE_NODE_SPACE SolverNode* nodes, float passed, float relaxation,
-                              float* worst)
+DRAPE_FUNCTION int projectRow(ContactRow* row, DRAPE_NODE_SPACE SolverNode* nodes, float passed, float tolerated,
+                              float relaxation, float* worst)
 {
     Vec3 shift;
-    if (!pushRow(row, rowDisplacement(row, nodes), passed, relaxation, worst, &shift)) return 0;
+    if (!pushRow(row, rowDisplacement(row, nodes), passed, tolerated, relaxation, worst, &shift)) return 0;
     for (DRAPE_UINT k = 0; k < row->m_count; ++k)
     {
         DRAPE_NODE_SPACE SolverNode* node = nodes + row->m_nodes[k];

@@ -14,6 +14,7 @@ typedef struct Sweep
 {
     uint m_stage;
     float m_passed;      // share of the step that has passed
+    float m_tolerated;   // m, violation that a projection leaves
     float m_slack;       // m, bound on how far levels lie above those at the step's end
     float m_relaxation;  // share of a violation that a projection corrects
     uint m_round;        // see nextRound()
@@ -25,6 +26,7 @@ DRAPE_HOT_FUNCTION void beginSweep(const Solve* solve, const uint substep, const
 {
     sweep->m_stage = substep + 1;
     sweep->m_passed = closes ? 1.0f : (float)(substep + 1) / (float)solve->m_cloth->m_substeps;
+    sweep->m_tolerated = closes ? solve->m_cloth->m_tolerated : 0.0f;
     sweep->m_slack = (1.0f - sweep->m_passed) * solve->m_cloth->m_retreat;
     sweep->m_relaxation = closes ? 1.0f : DRAPE_TURN_RELAXATION;
     sweep->m_worst = 0.0f;
@@ -252,8 +254,8 @@ DRAPE_HOT_FUNCTION int pushContact(const Solve* solve, const uint index, const S
     const uint count = DRAPE_CONTACT_COUNT(contact->m_flags);
     const Displacements at = displacementsOf(solve, contact);
     Vec3 shift;
-    if (!pushRow(&acting->m_row, rowWay(acting, count, &at), sweep->m_passed, sweep->m_relaxation, &sweep->m_worst,
-                 &shift))
+    if (!pushRow(&acting->m_row, rowWay(acting, count, &at), sweep->m_passed, sweep->m_tolerated, sweep->m_relaxation,
+                 &sweep->m_worst, &shift))
         return 0;
     const Vec3 held = acting->m_row.m_held;
     ((__global float4*)(solve->m_acting + index))[2] = (float4)(held.x, held.y, held.z, acting->m_row.m_multiplier);

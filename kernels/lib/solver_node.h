@@ -7,6 +7,25 @@
 
 DRAPE_NAMESPACE_BEGIN
 
+// Bounds of nodeSettle(): the displacement in a step, as a share of the acceleration times the step's time squared, and
+// the speed at its end, as a share of the acceleration times the time. Measured: docs/design_notes/contact_sweeps.md,
+// "Rest".
+#define DRAPE_SETTLED_WAY 0.02f
+#define DRAPE_SETTLED_SPEED 0.006f
+
+// Puts a node back to its path's start, at rest, if it hardly moved in the step. Without acceleration no node settles.
+// acceleration: m/s², by gravity and forces. perStep: 1/s, the inverse of the step's time.
+DRAPE_FUNCTION void nodeSettle(DRAPE_NODE_SPACE SolverNode* node, DRAPE_GLOBAL NodeState* state, Vec3 acceleration,
+                               float perStep)
+{
+    const float most2 = vec3Dot(acceleration, acceleration);
+    const Vec3 speed = vec3Scale(state->m_velocity, perStep / DRAPE_SETTLED_SPEED);
+    const Vec3 way = vec3Scale(node->m_displacement, perStep * perStep / DRAPE_SETTLED_WAY);
+    if (!(vec3Dot(speed, speed) < most2) || !(vec3Dot(way, way) < most2)) return;
+    node->m_displacement = vec3(0.0f, 0.0f, 0.0f);
+    state->m_velocity = vec3(0.0f, 0.0f, 0.0f);
+}
+
 DRAPE_FUNCTION void nodeRemember(const DRAPE_NODE_SPACE SolverNode* node, DRAPE_GLOBAL NodeState* state)
 {
     state->m_before = node->m_displacement;

@@ -66,6 +66,7 @@ typedef struct SolveCloth
     float m_mostThickness;      // m
     float m_fineViolation;      // m, worst violation that may remain before m_leastClosing sweeps are done
     float m_mostViolation;      // m, and after
+    float m_tolerated;          // m, violation that closing sweeps leave
     float m_nearDistance;       // m, below which features may have passed each other
     float m_margin;             // m, rounding margin of the levels
     float m_retreat;            // m, bound on the displacement of a node by an obstacle's motion

@@ -72,7 +72,7 @@ DRAPE_RARE_FUNCTION void endSubsteps(const Solve* solve)
 {
     const SolveRange nodes = solve->m_group->m_nodes;
     endNodes(solve, nodes);
-    syncNodes();
+    settleNodes(solve, nodes);
     rememberNodes(solve, nodes);
     syncNodes();
     applyLimits(solve);

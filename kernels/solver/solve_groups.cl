@@ -52,7 +52,10 @@ static void advance(const Solve* solve, const uint substep)
     const int ends = substep == cloth->m_substeps;
     if (substep > 0) endNodes(solve, nodes);
     if (ends)
+    {
+        settleNodes(solve, nodes);
         rememberNodes(solve, nodes);
+    }
     else
         advanceNodes(solve, nodes);
     // Limits beside a moving obstacle hold at the step's end alone.

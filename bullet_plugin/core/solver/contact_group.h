@@ -27,6 +27,7 @@ struct SweptCloth
     float m_margin = 0;      // m, rounding margin of the blocks' levels
     float m_retreat = 0;     // m, bound on the displacement of a node by an obstacle's motion
     float m_passed = 1;      // share of the step that has passed
+    float m_tolerated = 0;   // m, violation that a projection leaves
     int m_actingSweeps = 0;  // see ContactSweep::restart()
     unsigned m_stage = 0;    // see ContactSweep::restart()
 

@@ -86,6 +86,7 @@ void PackedStep::packCloth(std::size_t index, const ContactSource& source)
     cloth.m_hardness = contacts.m_hardness;
     cloth.m_mostThickness = contacts.m_mostThickness;
     cloth.m_fineViolation = kClosingTolerance * contacts.m_leastThickness;
+    cloth.m_tolerated = toleratedViolation(contacts);
     cloth.m_mostViolation = kMostViolation * contacts.m_leastThickness;
     cloth.m_nearDistance = kNearShare * contacts.m_leastThickness;
     cloth.m_sure = limit.sureDistance();

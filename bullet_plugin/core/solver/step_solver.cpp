@@ -234,6 +234,24 @@ void StepSolver::holdOthers()
                      });
 }
 
+// Brings nodes to rest that hardly moved. Only for cloths that touch resting obstacles, and no rigid body: momentum
+// goes to the obstacle. Closing sweeps follow, so that the contacts hold.
+void StepSolver::settle()
+{
+    const auto isSettled = [](const ContactSweep* sweep)
+    { return sweep->cloth().m_substeps && !sweep->cloth().m_rigid && obstaclesRest(sweep); };
+    select(m_touching, m_turn, isSettled);
+    const auto settleNodes = [](ContactSweep& sweep)
+    {
+        SolverNodes& nodes = sweep.nodes();
+        const Substeps& substeps = *sweep.cloth().m_substeps;
+        for (std::size_t i = 0; i < nodes.count(); ++i)
+            if (nodes.inverseMass(i) > 0)
+                nodeSettle(nodes.nodes() + i, nodes.states() + i, substeps.accelerations()[i], substeps.perStep());
+    };
+    m_team.forCloths(m_turn, settleNodes);
+}
+
 void StepSolver::beginClosing()
 {
     const auto begin = [](ContactSweep& sweep)
@@ -249,7 +267,7 @@ void StepSolver::close()
     beginClosing();
     applyLimits(m_all);
     for (ContactSweep* sweep : m_touching)
-        sweep->restart(1);
+        sweep->restart(1, 0, sweep->cloth().m_substeps ? toleratedViolation(sweep->contacts()) : 0.0f);
     m_team.run(m_touching);
     m_open = m_touching;
     for (int done = 1;; ++done)
@@ -286,6 +304,7 @@ void StepSolver::solveOnHost(const std::vector<SolverCloth>& cloths, const std::
     m_cloths = cloths;
     begin(source);
     iterate();
+    settle();
     close();
 }
 

@@ -39,6 +39,17 @@ inline int actingSweepsOf(int substeps)
 // measured earlier in it.
 constexpr float kClosingTolerance = 0.01f;
 constexpr float kMostViolation = 0.0625f;
+// Violation that closing sweeps leave after substeps, as a share of the thickness. Corrections that small would
+// undo how links and contacts share a load, in every step (docs/design_notes/contact_sweeps.md, "Rest").
+constexpr float kTolerated = 0.005f;
+static_assert(kTolerated < kClosingTolerance, "else sweeps never reach the tolerance");
+
+// Returns kTolerated as a distance, m.
+inline float toleratedViolation(const ClothContacts& contacts)
+{
+    return kTolerated * contacts.m_leastThickness;
+}
+
 static_assert(kMostViolation < DRAPE_RECOVERED_SHARE, "else cloth comes nearer from step to step");
 
 class StepSolver
@@ -80,6 +91,7 @@ private:
     void iterate();
     void runAgain(const Cloths& cloths);
     void holdOthers();
+    void settle();
     void beginClosing();
     void close();
 
