@@ -28,6 +28,8 @@ public:
     // too. Reads which nodes the links join. threads: null for the caller alone.
     bool canSolveNow(const btSoftBody& body, ThreadTeam* threads);
 
+    // Tells that Bullet solved the step before.
+    void changeOver() { m_substeps.changeOver(); }
     // Records the velocities before the body's predictMotion(). Does nothing for a body that sleeps.
     void beforePrediction(const btSoftBody& body);
     // Brings the predicted positions to where substeps take free nodes. Call after predictMotion(), with the same
