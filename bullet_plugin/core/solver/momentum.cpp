@@ -60,8 +60,8 @@ double dot(Vec3d a, Vec3d b)
 // Shares that damping leaves at the step's end.
 struct Kept
 {
-    double m_before = 1;    // of the momentum at the step's start
-    double m_received = 0;  // of what the cloth receives evenly over the step
+    double m_before = 1;    // share of the momentum at the step's start
+    double m_received = 0;  // share of what the cloth receives evenly over the step
 
     explicit Kept(const Substeps& substeps)
     {
@@ -76,10 +76,10 @@ struct Kept
 // Sums over the nodes, about the first node's start.
 struct Sums
 {
-    double m_mass = 0, m_energy = 0;     // energy: twice the kinetic one
-    Vec3d m_moment, m_momentum;          // of mass and of velocity at the step's end
-    Vec3d m_missing, m_missingTurning;   // linear and angular momentum
-    double m_xx = 0, m_yy = 0, m_zz = 0;  // moments of mass
+    double m_mass = 0, m_energy = 0;      // energy: twice the kinetic one
+    Vec3d m_moment, m_momentum;           // moments of mass; linear momentum at the step's end
+    Vec3d m_missing, m_missingTurning;    // linear and angular momentum
+    double m_xx = 0, m_yy = 0, m_zz = 0;  // second moments of mass
     double m_yz = 0, m_zx = 0, m_xy = 0;
 };
 
@@ -88,7 +88,8 @@ struct Sums
 bool sumUp(const SolverNodes& nodes, const Substeps& substeps, const Kept& kept, Sums& sums)
 {
     const double time = double(substeps.time()), given = kept.m_received * time;
-    // A node begins with the velocity way / time - pathTime() * acceleration. Substeps accelerate nodes where they start.
+    // A node begins with the velocity way / time - pathTime() * acceleration. Substeps accelerate nodes where they
+    // start.
     const double perWay = kept.m_before / time, perForce = given - kept.m_before * double(substeps.pathTime());
     const double inMotion = given * 0.5 * (1 - 1 / double(substeps.count()));
     const Vec3d origin = wide(nodes.start(0));

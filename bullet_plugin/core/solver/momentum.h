@@ -10,8 +10,8 @@
 
 namespace drape
 {
-// Returns whether forces and rigid bodies that yield are all that changed the cloth's momentum in the step, but for
-// fixed nodes: the core solves its links, and it is away from obstacles that would limit its motion.
+// Returns whether keepMomentum() applies to the cloth. The core must solve its links, no obstacle may be so near that
+// it limits the motion, and rigid bodies that the cloth touches or hangs on must be dynamic.
 bool keepsMomentum(const SolverCloth& cloth);
 
 // Corrects the momentum after a step, if keepsMomentum(). Does nothing if a node is fixed or a velocity is not finite.
