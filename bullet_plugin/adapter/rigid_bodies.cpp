@@ -16,6 +16,7 @@ RigidBody rigidBodyOf(const btRigidBody* rigid)
 {
     RigidBody body = {};
     if (!rigid) return body;
+    body.m_centre = vec3Of(rigid->getWorldTransform().getOrigin());
     body.m_velocity = vec3Of(rigid->getLinearVelocity());
     body.m_spin = vec3Of(rigid->getAngularVelocity());
     if (rigid->isStaticOrKinematicObject()) return body;

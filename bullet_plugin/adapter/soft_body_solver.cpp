@@ -124,6 +124,7 @@ struct SoftBodySolver::Work
     std::unique_ptr<StepSolver> m_solver;
     UsageWatch m_usage;
     std::unordered_map<const btSoftBody*, std::unique_ptr<SubstepBody>> m_substeps;  // bodies whose links Drape solves
+    std::vector<const btSoftBody*> m_byBullet;  // bodies whose links Bullet solved last, sorted by address
     // Working memory of solveBodies(): bodies with pairs, those among them whose links Bullet solves, and others whose
     // links the core solves.
     std::vector<SolverCloth> m_touched;
@@ -231,21 +232,33 @@ void SoftBodySolver::reserveSubsteps()
 {
     auto& all = m_work->m_substeps;
     std::size_t solved = 0;
+    const std::vector<const btSoftBody*> before = std::move(m_work->m_byBullet);
+    std::vector<const btSoftBody*>& byBullet = m_work->m_byBullet;
+    byBullet.clear();
     for (int i = 0; i < m_softBodySet.size(); ++i)
     {
         const btSoftBody& body = *m_softBodySet[i];
         auto at = all.find(&body);
+        const bool wasByBullet = std::binary_search(before.begin(), before.end(), &body);
         // Sleeping bodies are not examined: a world at rest may have thousands.
         const bool isSolved = body.isActive() ? !reasonFromSettings(*m_state, body) : at != all.end();
-        if (isSolved && at == all.end()) at = all.emplace(&body, std::make_unique<SubstepBody>()).first;
+        if (isSolved && at == all.end())
+        {
+            at = all.emplace(&body, std::make_unique<SubstepBody>()).first;
+            if (wasByBullet) at->second->changeOver();
+        }
         if (isSolved)
         {
             at->second->reserve(body);
             ++solved;
         }
-        else if (at != all.end())
-            all.erase(at);
+        else
+        {
+            if (body.isActive() || wasByBullet) byBullet.push_back(&body);
+            if (at != all.end()) all.erase(at);
+        }
     }
+    std::sort(byBullet.begin(), byBullet.end());
     if (solved < all.size()) forgetRemoved();
 }
 

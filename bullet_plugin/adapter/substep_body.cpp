@@ -118,6 +118,7 @@ bool SubstepBody::fits(const btSoftBody& body) const
 void SubstepBody::leave(btSoftBody& body)
 {
     m_isPredicted = false;
+    changeOver();
     const btScalar shift = shiftOf(body);
     for (std::size_t i = 0; fits(body) && i < m_accelerations.size(); ++i)
         body.m_nodes[static_cast<int>(i)].m_x -= vectorOf(m_accelerations[i]) * shift;

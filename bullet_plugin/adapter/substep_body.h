@@ -29,6 +29,8 @@ public:
     // too. Reads the links. threads: null for the caller alone.
     bool canSolveNow(const btSoftBody& body, ThreadTeam* threads);
 
+    // Tells that Bullet solved the step before.
+    void changeOver() { m_substeps.changeOver(); }
     // Makes room for a step of the body. A body that sleeps needs none.
     void reserve(const btSoftBody& body);
     // Records the velocities before the body's prediction, after reserve(). Allocates no memory. threads: null for the

@@ -144,6 +144,21 @@ TEST_P(DeviceSolverTest, APinnedFlagWithoutContactsMovesAsOnTheHost)
     EXPECT_EQ(expectSame({addFlag}), std::size_t(kSteps));
 }
 
+// Away from the obstacle, so that its momentum is kept.
+TEST_P(DeviceSolverTest, AFreeClothTurnsAsOnTheHost)
+{
+    const auto addTurning = [](DropWorld& world, std::vector<btSoftBody*>& cloths)
+    {
+        ClothSpec spec;
+        spec.m_centre = btVector3(5, 25, 0);
+        btSoftBody& cloth = world.addCloth(spec);
+        for (int i = 0; i < cloth.m_nodes.size(); ++i)
+            cloth.m_nodes[i].m_v = btVector3(1, 2, 3).cross(cloth.m_nodes[i].m_x - spec.m_centre);
+        cloths.push_back(&cloth);
+    };
+    EXPECT_EQ(expectSame({addTurning}), std::size_t(kSteps));
+}
+
 // A cloth that hangs on a rigid body is solved on the host, beside one on the device.
 TEST_P(DeviceSolverTest, TheHostSolvesWhatTheDeviceCannot)
 {

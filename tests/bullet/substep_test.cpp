@@ -163,27 +163,30 @@ TEST(Substeps, SoftLinksKeepTheirStiffness)
     EXPECT_GT(drape, 0.999);
 }
 
+// A cloth that flies and turns in vacuum. piterations: 0 for Bullet's default of one.
 TEST(Substeps, FreeClothKeepsItsMomentum)
 {
-    Plugin plugin(withSolver(Solver::Drape));
-    DropWorld world(&plugin);
-    world.world().getWorldInfo().m_gravity.setZero();
-    ClothSpec spec;
-    spec.m_damping = 0;
-    btSoftBody& cloth = world.addCloth(spec);
-    for (int i = 0; i < cloth.m_nodes.size(); ++i)
-        cloth.m_nodes[i].m_v =
-            btVector3(btScalar(0.3), btScalar(0.01) * btScalar(i % 17), btScalar(0.02) * btScalar(i / 17));
-    const std::vector<double> before = momentumOf(cloth);
-    world.step(300);
-    const std::vector<double> after = momentumOf(cloth);
-    world.step(700);
-    const std::vector<double> last = momentumOf(cloth);
-    for (std::size_t i = 0; i < 3; ++i)
+    for (const int iterations : {0, 4, 32})
     {
-        EXPECT_NEAR(after[i], before[i], 1e-5 * before[6]) << "linear " << i;
-        EXPECT_NEAR(after[3 + i], before[3 + i], 1e-4 * before[7]) << "angular " << i;
-        EXPECT_NEAR(last[i], before[i], 1e-5 * before[6]) << "linear " << i << ", 1,000 steps";
+        SCOPED_TRACE(std::to_string(iterations) + " iterations");
+        Plugin plugin(withSolver(iterations > 0 ? Solver::Drape : Solver::Auto));
+        DropWorld world(&plugin);
+        world.world().getWorldInfo().m_gravity.setZero();
+        ClothSpec spec;
+        spec.m_damping = 0;
+        btSoftBody& cloth = world.addCloth(spec);
+        cloth.m_cfg.piterations = std::max(1, iterations);
+        for (int i = 0; i < cloth.m_nodes.size(); ++i)
+            cloth.m_nodes[i].m_v =
+                btVector3(btScalar(0.3), btScalar(0.01) * btScalar(i % 17), btScalar(0.02) * btScalar(i / 17));
+        const std::vector<double> before = momentumOf(cloth);
+        world.step(1000);
+        const std::vector<double> after = momentumOf(cloth);
+        for (std::size_t i = 0; i < 3; ++i)
+        {
+            EXPECT_NEAR(after[i], before[i], 1e-5 * before[6]) << "linear " << i;
+            EXPECT_NEAR(after[3 + i], before[3 + i], 1e-5 * before[7]) << "angular " << i;
+        }
     }
 }
 
@@ -280,8 +283,8 @@ TEST(Substeps, WhyBulletSolvesNamesTheReason)
     EXPECT_EQ(reason(), "");
 }
 
-// Velocity iterations leave the steps to Bullet while they are on. Its links let the cloth sag; Drape's contract it
-// within some steps. Nothing is thrown.
+// Velocity iterations leave the steps to Bullet while they are on. Its links let the cloth sag, at up to 0.2 m/s.
+// Drape's contract it within some ten steps, at 0.09 m/s.
 TEST(Substeps, AClothAtRestChangesOverWithoutAJump)
 {
     Plugin plugin(withSolver(Solver::Drape));
@@ -301,7 +304,7 @@ TEST(Substeps, AClothAtRestChangesOverWithoutAJump)
         for (int step = 0; step < 60; ++step)
         {
             world.step();
-            EXPECT_LT(rmsSpeed(cloth), 1) << "step " << step << " with " << iterations;
+            EXPECT_LT(rmsSpeed(cloth), iterations == 0 ? 0.12 : 0.25) << "step " << step << " with " << iterations;
         }
     }
 }

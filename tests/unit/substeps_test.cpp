@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "bullet_plugin/core/solver/cloth_parts.h"
+#include "bullet_plugin/core/solver/momentum.h"
 #include "tests/support/cases.h"
 
 namespace drape::test
@@ -148,6 +149,72 @@ TEST(Substeps, CorrectionsBecomeVelocity)
     substeps.advance(nodes, nullptr);
     expectEqual(nodes.displacement(0), vec3(0, -0.5f, 0));
     expectEqual(nodes.displacement(1), way);
+}
+
+// Nodes without links, under forces of their own and damping, have the momentum that keepMomentum() expects.
+TEST(Momentum, ForcesAndDampingChangeIt)
+{
+    Random random(706);
+    SCOPED_TRACE("seed 706");
+    for (const int count : {1, 2, 7})
+    {
+        SCOPED_TRACE(std::to_string(count) + " substeps");
+        ClothContacts contacts;
+        SolverNodes& nodes = contacts.m_nodes;
+        nodes.resize(40);
+        std::vector<Vec3> accelerations;
+        for (std::size_t i = 0; i < nodes.count(); ++i)
+        {
+            nodes.setPath(i, randomVector(1, random), randomVector(0.05f, random), vec3(0, 0, 0),
+                          random.uniform(0.5f, 2));
+            accelerations.push_back(randomVector(30, random));
+        }
+        Substeps substeps;
+        substeps.links().build(nodes.count(), 1, {});
+        substeps.prepare(1.0f / 60, count, 0, accelerations);
+        substeps.run(nodes, nullptr);
+        std::vector<Vec3> before;
+        for (std::size_t i = 0; i < nodes.count(); ++i)
+            before.push_back(nodes.velocity(i));
+        const SolverCloth cloth = {&contacts, &substeps, nullptr, nullptr};
+        ASSERT_TRUE(keepsMomentum(cloth));
+        keepMomentum(cloth);
+        for (std::size_t i = 0; i < nodes.count(); ++i)
+            expectNear(nodes.velocity(i), before[i], 2e-6f);
+    }
+}
+
+// Velocities that turn with the cloth replace spin and motion that were lost.
+TEST(Momentum, LostMomentumComesBack)
+{
+    Random random(707);
+    SCOPED_TRACE("seed 707");
+    const std::vector<Vec3> none(30, vec3(0, 0, 0));
+    ClothContacts contacts;
+    SolverNodes& nodes = contacts.m_nodes;
+    nodes.resize(none.size());
+    for (std::size_t i = 0; i < nodes.count(); ++i)
+        nodes.setPath(i, randomVector(1, random), randomVector(0.05f, random), none[i], random.uniform(0.5f, 2));
+    Substeps substeps;
+    substeps.links().build(nodes.count(), 1, {});
+    substeps.prepare(1.0f / 60, 2, 0, none);
+    substeps.run(nodes, nullptr);
+    std::vector<Vec3> before;
+    for (std::size_t i = 0; i < nodes.count(); ++i)
+    {
+        before.push_back(nodes.velocity(i));
+        const Vec3 lost = vec3AddScaled(vec3(0, 0.01f, 0), vec3Cross(vec3(0.02f, 0, 0.01f), nodes.position(i)), -1);
+        nodes.addVelocity(i, lost);
+    }
+    const SolverCloth cloth = {&contacts, &substeps, nullptr, nullptr};
+    keepMomentum(cloth);
+    for (std::size_t i = 0; i < nodes.count(); ++i)
+        expectNear(nodes.velocity(i), before[i], 1e-5f);
+    const Vec3 fast = vec3Scale(nodes.velocity(0), 1.1f);
+    nodes.setPath(3, none[3], none[3], none[3], 0);
+    nodes.setVelocity(0, fast);
+    keepMomentum(cloth);
+    expectEqual(nodes.velocity(0), fast);  // a node is fixed
 }
 
 TEST(Substeps, GiveTheSameBitsOnAnyNumberOfThreads)

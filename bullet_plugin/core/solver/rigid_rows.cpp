@@ -20,8 +20,22 @@ Vec3 byAxis(Vec3 a, Vec3 b)
 
 void RigidRows::clear()
 {
+    m_impulse = m_turning = vec3(0, 0, 0);
     m_contacts.clear();
     m_anchors.clear();
+}
+
+bool RigidRows::bodiesYield() const
+{
+    const auto yields = [this](std::uint32_t index)
+    {
+        const Vec3 inverseMass = (*m_bodies)[index].m_inverseMass;
+        return inverseMass.x > 0 && inverseMass.y > 0 && inverseMass.z > 0;
+    };
+    return std::all_of(m_contacts.begin(), m_contacts.end(),
+                       [&](const ContactState& state) { return yields(state.m_contact.m_body); }) &&
+           std::all_of(m_anchors.begin(), m_anchors.end(),
+                       [&](const AnchorState& state) { return yields(state.m_anchor.m_body); });
 }
 
 Vec3 RigidRows::velocityAt(std::uint32_t index, Vec3 arm) const
@@ -49,6 +63,8 @@ void RigidRows::push(SolverNodes& nodes, std::uint32_t node, std::uint32_t index
     body.m_spin = vec3Add(body.m_spin, product(body.m_inverseInertia, turning));
     body.m_impulse = vec3Add(body.m_impulse, impulse);
     body.m_turning = vec3Add(body.m_turning, turning);
+    m_impulse = vec3Add(m_impulse, impulse);
+    m_turning = vec3Add(m_turning, vec3Cross(vec3Add(vec3Sub(body.m_centre, m_reference), arm), impulse));
 }
 
 void RigidRows::begin(float time, float correctionTime, float passed)

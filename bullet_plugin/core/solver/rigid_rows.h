@@ -16,6 +16,7 @@ namespace drape
 {
 struct RigidBody
 {
+    Vec3 m_centre;              // m, centre of mass
     Vec3 m_velocity, m_spin;    // m/s at the centre of mass, rad/s
     Vec3 m_inverseMass;         // 1/kg by axis; 0 for a body that does not yield
     Vec3 m_inverseInertia[3];   // rows, 1/(kg m²)
@@ -47,14 +48,30 @@ class RigidRows
 public:
     bool empty() const { return m_contacts.empty() && m_anchors.empty(); }
     void clear();
-    // bodies: of all rows; they must stay in place until the last substep.
+    // bodies: of all rows; they must stay in place until the last substep. Call before add().
     void setBodies(std::vector<RigidBody>& bodies) { m_bodies = &bodies; }
-    void add(const RigidContact& contact) { m_contacts.push_back({contact, vec3(0, 0, 0), vec3(0, 0, 0), 0}); }
-    void add(const RigidAnchor& anchor) { m_anchors.push_back({anchor, vec3(0, 0, 0)}); }
+    void add(const RigidContact& contact)
+    {
+        if (empty()) m_reference = (*m_bodies)[contact.m_body].m_centre;
+        m_contacts.push_back({contact, vec3(0, 0, 0), vec3(0, 0, 0), 0});
+    }
+    void add(const RigidAnchor& anchor)
+    {
+        if (empty()) m_reference = (*m_bodies)[anchor.m_body].m_centre;
+        m_anchors.push_back({anchor, vec3(0, 0, 0)});
+    }
 
     // Begins a substep of `time` seconds that ends when the share `passed` of the step has passed. correctionTime: s,
     // see Substeps.
     void begin(float time, float correctionTime, float passed);
+    // Returns whether all bodies of the rows yield.
+    bool bodiesYield() const;
+    // Returns what the rows gave to the bodies since clear(): impulse, N s, and angular momentum about reference(),
+    // N m s.
+    Vec3 impulse() const { return m_impulse; }
+    Vec3 turning() const { return m_turning; }
+    // Returns the first body's centre of mass, m.
+    Vec3 reference() const { return m_reference; }
     // Projects every row once.
     void project(SolverNodes& nodes);
     // Ends a substep: the bodies' points have gone on with the bodies' velocities.
@@ -83,6 +100,7 @@ private:
     std::vector<RigidBody>* m_bodies = nullptr;
     std::vector<ContactState> m_contacts;
     std::vector<AnchorState> m_anchors;
+    Vec3 m_reference = {0, 0, 0}, m_impulse = {0, 0, 0}, m_turning = {0, 0, 0};
     float m_time = 1, m_correctionTime = 1, m_passed = 1;
 };
 }  // namespace drape

@@ -4,6 +4,7 @@
 #include <iterator>
 
 #include "kernels/lib/closing_sweeps.h"
+#include "momentum.h"
 #include "rigid_rows.h"
 
 namespace drape
@@ -12,6 +13,8 @@ namespace
 {
 // Minimum nodes for sharing cloths among threads; a substep takes 50 ns a node.
 constexpr std::size_t kLeastNodesShared = 2048;
+// Minimum nodes for sharing keepMomenta() among threads: it takes 20 ns a node.
+constexpr std::size_t kLeastKeepingShared = 8192;
 
 bool hasContacts(const ContactSweep* sweep)
 {
@@ -308,8 +311,34 @@ void StepSolver::solveOnHost(const std::vector<SolverCloth>& cloths, const std::
     close();
 }
 
+// Keeps the momentum of cloths that no obstacle touches.
+void StepSolver::keepMomenta(const std::vector<SolverCloth>& cloths, const std::vector<SolverCloth>& free)
+{
+    m_keeping.clear();
+    std::size_t nodes = 0;
+    for (const std::vector<SolverCloth>* all : {&cloths, &free})
+        for (const SolverCloth& cloth : *all)
+        {
+            if (!keepsMomentum(cloth)) continue;
+            m_keeping.push_back(&cloth);
+            nodes += cloth.m_contacts->m_nodes.count();
+        }
+    if (nodes >= kLeastKeepingShared)
+        return m_threads.run(m_keeping.size(), [&](std::size_t i) { keepMomentum(*m_keeping[i]); });
+    for (const SolverCloth* cloth : m_keeping)
+        keepMomentum(*cloth);
+}
+
 std::size_t StepSolver::solve(const std::vector<SolverCloth>& cloths, const std::vector<SolverCloth>& free,
                               const ContactSource& source, SolveStage* stage)
+{
+    const std::size_t onDevice = solveAll(cloths, free, source, stage);
+    keepMomenta(cloths, free);
+    return onDevice;
+}
+
+std::size_t StepSolver::solveAll(const std::vector<SolverCloth>& cloths, const std::vector<SolverCloth>& free,
+                                 const ContactSource& source, SolveStage* stage)
 {
     m_onDevice.clear();
     m_onHost.clear();

@@ -76,6 +76,9 @@ private:
 
     using Cloths = SweepTeam::Cloths;
 
+    std::size_t solveAll(const std::vector<SolverCloth>& cloths, const std::vector<SolverCloth>& free,
+                         const ContactSource& source, SolveStage* stage);
+    void keepMomenta(const std::vector<SolverCloth>& cloths, const std::vector<SolverCloth>& free);
     void solveOnHost(const std::vector<SolverCloth>& cloths, const std::vector<SolverCloth>& free,
                      const ContactSource& source);
     void begin(const ContactSource& source);
@@ -103,6 +106,7 @@ private:
     Cloths m_all, m_touching, m_iterating, m_turn, m_meeting, m_open, m_resting, m_others;
     std::vector<LinkedNodes> m_own;  // working memory of forSubsteps()
     PackedStep m_packed;
+    std::vector<const SolverCloth*> m_keeping;  // working memory of keepMomenta()
     std::vector<SolverCloth> m_onDevice, m_onHost, m_freeOnHost, m_refused;  // working memory of solve()
 };
 }  // namespace drape

@@ -24,10 +24,13 @@ public:
     LinkSweep& links() { return m_links; }
     const LinkSweep& links() const { return m_links; }
     int count() const { return m_count; }
+    // Returns the step's time, s.
+    float time() const { return m_time; }
     // Returns the time of a substep, s.
     float substepTime() const { return m_time / float(m_count); }
     // Returns the time by which a correction of a position is divided to give a velocity, s. It is that of a substep,
-    // or longer for some steps after a longer one, whose errors would otherwise be corrected at great speed.
+    // or longer for some steps after a longer one or after changeOver(): errors that those left would otherwise be
+    // corrected at great speed.
     float correctionTime() const { return m_correctionTime; }
     // Returns the inverse of the step's time, 1/s.
     float perStep() const { return 1 / m_time; }
@@ -40,6 +43,9 @@ public:
     // Prepares a step of `time` seconds (> 0) in `count` parts. damping: the share of a velocity that is lost in the
     // step, 0 to 1. accelerations: of the nodes, m/s²; they must stay in place until the last substep.
     void prepare(float time, int count, float damping, const std::vector<Vec3>& accelerations);
+    // Tells that another solver made the step before: it may have left other errors than substeps do. Call before
+    // prepare().
+    void changeOver() { m_changesOver = true; }
     // Returns the share s in the motion of a free node in a step: time · velocity + s · time² · acceleration.
     static float pathShare(int count) { return 0.5f * (1.0f + 1.0f / float(count)); }
 
@@ -62,5 +68,7 @@ private:
     float m_correctionTime = 0;
     float m_kept = 1;
     int m_count = 1;
+    float m_leastRatio = 1;  // minimum of m_correctionTime, as a share of that of the step before
+    bool m_changesOver = false;
 };
 }  // namespace drape
