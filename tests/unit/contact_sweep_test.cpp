@@ -68,7 +68,7 @@ std::vector<FeatureContacts> featuresOf(const Pipeline& pipeline, const std::vec
     for (const Contact& contact : contacts)
     {
         const ClothFeature cloth = pipeline.clothFeature(contact);
-        if (features.empty() || features.back().m_contacts->m_slot != contact.m_slot)
+        if (features.empty() || features.back().m_contacts->m_featureIndex != contact.m_featureIndex)
             features.push_back({&contact, 0, {cloth.m_nodes[0], cloth.m_nodes[1], cloth.m_nodes[2]}, 1});
         ++features.back().m_count;
     }

@@ -50,7 +50,7 @@ void PlainSweep::sortRows(const ClothParts& parts)
     {
         Row& row = m_rows[i];
         row.m_group = parts.groupOf(row.m_contact.m_nodes);
-        if (i == 0 || row.m_detected.m_slot != m_rows[i - 1].m_detected.m_slot)
+        if (i == 0 || row.m_detected.m_featureIndex != m_rows[i - 1].m_detected.m_featureIndex)
         {
             auto& nodes = taken[{row.m_group, kindOf(row.m_contact)}];
             const auto isTaken = [&](int node) { return node >= 0 && nodes[node].count(colour) > 0; };

@@ -57,7 +57,7 @@ private:
     void coverMotions(const std::vector<StepObstacle>& obstacles);
     void detect();
     void solveBodies(StepParts& times);
-    void closeStrayed(const std::vector<BodyContacts*>& bodies);
+    void closeOffPath(const std::vector<BodyContacts*>& bodies);
     void solveStep();
     void endFailedStep();
 
