@@ -14,7 +14,7 @@ string(JOIN ":" slow_tests ${slow_tests})
 
 # Tests that measure time run alone.
 set(timed_tests
-  "*AWorldAtRestCostsFiveMicroseconds*:*GrowsLittleMoreThanTheHitsOfASlot*"
+  "*AWorldAtRestCostsFiveMicroseconds*:*GrowsLittleMoreThanTheContactsOfAFeature*"
   "*PrepareLeavesTheHostNothingToBuild*:*ABusyMachineIsMeasuredAgain*")
 string(JOIN ":" timed_tests ${timed_tests})
 

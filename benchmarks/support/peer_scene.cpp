@@ -109,10 +109,11 @@ void PeerScene::narrowPhase(const std::vector<Candidate>& candidates, const floa
             contacts.clear();
             for (const std::vector<Contact>& part : parts)
                 contacts.insert(contacts.end(), part.begin(), part.end());
-            tbb::parallel_sort(
-                contacts.begin(), contacts.end(),
-                [](const Contact& a, const Contact& b)
-                { return std::tie(a.m_slot, a.m_obstacleFeature) < std::tie(b.m_slot, b.m_obstacleFeature); });
+            tbb::parallel_sort(contacts.begin(), contacts.end(),
+                               [](const Contact& a, const Contact& b) {
+                                   return std::tie(a.m_featureIndex, a.m_obstacleFeature) <
+                                          std::tie(b.m_featureIndex, b.m_obstacleFeature);
+                               });
         });
 }
 }  // namespace drape::bench

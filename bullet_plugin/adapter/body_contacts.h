@@ -21,7 +21,7 @@ struct TangledPair
     std::vector<unsigned char> m_wrongSide;  // by node
     std::vector<unsigned char> m_meets;      // by node: belongs to a face that meets the obstacle
 
-    bool holds(const int nodes[3]) const
+    bool contains(const int nodes[3]) const
     {
         bool allMeet = nodes[1] >= 0;
         for (int k = 0; k < 3 && nodes[k] >= 0; ++k)

@@ -240,7 +240,7 @@ void CollisionStep::receive(const ContactList& contacts)
         const ClothFeature cloth = m_state.pipeline().clothFeature(first);
         if (!body || body->m_cloth != cloth.m_cloth) body = bodyOf(cloth.m_cloth);
         const std::size_t begin = i;
-        while (i < contacts.size() && contacts[i].m_slot == first.m_slot)
+        while (i < contacts.size() && contacts[i].m_featureIndex == first.m_featureIndex)
             ++i;
         if (!body || body->m_leftOut) continue;
         const std::uint32_t count = static_cast<std::uint32_t>(i - begin);
@@ -334,21 +334,21 @@ void CollisionStep::finish()
     }
 }
 
-bool CollisionStep::cutStrayed(const std::vector<bool>& strayed, Cut cut)
+bool CollisionStep::cutOffPath(const std::vector<bool>& offPath, Cut cut)
 {
     bool any = false;
     for (std::size_t i = 0; i < m_bodies.size(); ++i)
-        if (strayed[i]) any = cutAtImpactsOf(m_bodies[i], cut) || any;
+        if (offPath[i]) any = cutAtImpactsOf(m_bodies[i], cut) || any;
     return any;
 }
 
 // Reports bodies whose paths still pass a surface after the last cut. The next step checks them where they are,
 // except at nodes that the app moves.
-void CollisionStep::reportPassed(const std::vector<bool>& strayed)
+void CollisionStep::reportPassed(const std::vector<bool>& offPath)
 {
     for (std::size_t i = 0; i < m_bodies.size(); ++i)
     {
-        if (!strayed[i]) continue;
+        if (!offPath[i]) continue;
         std::vector<SolverContact> impacts = impactsOf(m_bodies[i]);
         const SolverNodes& nodes = m_bodies[i].nodes();
         const auto isHeld = [&](const SolverContact& impact)
@@ -369,13 +369,13 @@ void CollisionStep::detectRealPaths()
     receiveHeld(Detection::Check);
 }
 
-std::vector<BodyContacts*> CollisionStep::checkStrayed()
+std::vector<BodyContacts*> CollisionStep::checkOffPath()
 {
-    std::vector<bool> strayed;
+    std::vector<bool> offPath;
     for (BodyContacts& body : m_bodies)
-        strayed.push_back((body.m_contacts.m_mayHavePassed && !body.m_wasTangled) ||
-                          body.m_contacts.m_limit.strayed(body.nodes()));
-    if (std::find(strayed.begin(), strayed.end(), true) == strayed.end()) return {};
+        offPath.push_back((body.m_contacts.m_mayHavePassed && !body.m_wasTangled) ||
+                          body.m_contacts.m_limit.anyOffPath(body.nodes()));
+    if (std::find(offPath.begin(), offPath.end(), true) == offPath.end()) return {};
     // Keeps the reported contacts as the solver received them.
     m_state.m_found.keepList();
     for (int detections = 1;; ++detections)
@@ -383,14 +383,14 @@ std::vector<BodyContacts*> CollisionStep::checkStrayed()
         detectRealPaths();
         if (detections > kMostDetections)
         {
-            reportPassed(strayed);
+            reportPassed(offPath);
             return {};
         }
-        if (!cutStrayed(strayed, detections < kMostDetections ? Cut::EachNode : Cut::WholeBody)) break;
+        if (!cutOffPath(offPath, detections < kMostDetections ? Cut::EachNode : Cut::WholeBody)) break;
     }
     std::vector<BodyContacts*> bodies;
     for (std::size_t i = 0; i < m_bodies.size(); ++i)
-        if (strayed[i] && !m_bodies[i].m_leftOut) bodies.push_back(&m_bodies[i]);
+        if (offPath[i] && !m_bodies[i].m_leftOut) bodies.push_back(&m_bodies[i]);
     return bodies;
 }
 }  // namespace drape

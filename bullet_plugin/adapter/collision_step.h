@@ -28,7 +28,7 @@ public:
     // Detects again, once the bodies are solved, along the real paths of bodies whose links pulled nodes far off
     // their predicted paths. Ends those paths before anything that they would have passed. Returns these bodies, with
     // their contacts along the paths.
-    std::vector<BodyContacts*> checkStrayed();
+    std::vector<BodyContacts*> checkOffPath();
     // Detects along the bodies' real paths, which end at their current positions.
     void detectRealPaths();
     // Returns whether a path of the last detection passes a surface.
@@ -85,10 +85,10 @@ private:
     float allowanceOf(MeshId cloth) const;
     void receive(const ContactList& contacts);
     std::vector<SolverContact> impactsOf(const BodyContacts& body) const;
-    void reportPassed(const std::vector<bool>& strayed);
+    void reportPassed(const std::vector<bool>& offPath);
     bool cutAtImpactsOf(BodyContacts& body, Cut cut);
     bool cutPaths();
-    bool cutStrayed(const std::vector<bool>& strayed, Cut cut);
+    bool cutOffPath(const std::vector<bool>& offPath, Cut cut);
     BodyContacts* bodyOf(MeshId cloth);
     void addBody(ClothMirror& cloth, btSoftBody* body);
 

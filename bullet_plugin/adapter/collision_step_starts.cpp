@@ -106,7 +106,7 @@ void CollisionStep::addHeldContacts(BodyContacts& body, const Contact* first, st
         const MeshId obstacle = m_state.pipeline().view(contact).m_obstacle;
         return std::all_of(body.m_tangled.begin(), body.m_tangled.end(),
                            [&](const TangledPair& tangled)
-                           { return tangled.m_obstacle != obstacle || tangled.holds(ordered.m_nodes); });
+                           { return tangled.m_obstacle != obstacle || tangled.contains(ordered.m_nodes); });
     };
     for (const Contact *contact = first, *end = first + count; contact != end;)
     {

@@ -139,11 +139,12 @@ void PairStarts::pushToSurface(const StartingPair& pair, const MeshProbe& probe,
     std::vector<std::size_t> wrong;
     for (std::size_t i = 0; i < m_places.size(); ++i)
         if (m_wrong[i]) wrong.push_back(i);
-    std::vector<Vec3> ways(wrong.size());
-    const auto find = [&](std::size_t i) { ways[i] = vec3Sub(probe.nearest(m_places[wrong[i]]), m_places[wrong[i]]); };
+    std::vector<Vec3> pushes(wrong.size());
+    const auto find = [&](std::size_t i)
+    { pushes[i] = vec3Sub(probe.nearest(m_places[wrong[i]]), m_places[wrong[i]]); };
     runShared(m_state.threads(), wrong.size() > kLeastShared, wrong.size(), find);
     for (std::size_t i = 0; i < wrong.size(); ++i)
-        pushNode(pair, static_cast<int>(wrong[i]), ways[i], body);
+        pushNode(pair, static_cast<int>(wrong[i]), pushes[i], body);
     pushFaces(pair, probe, body);
 }
 

@@ -438,7 +438,7 @@ void SoftBodySolver::solveBodies(StepParts& parts)
 
 // Keeps bodies that strayed from their predicted paths at their distance from what is near their real ones. A body that
 // would pass a surface on the way goes back to where it was checked.
-void SoftBodySolver::closeStrayed(const std::vector<BodyContacts*>& bodies)
+void SoftBodySolver::closeOffPath(const std::vector<BodyContacts*>& bodies)
 {
     if (bodies.empty()) return;
     std::vector<SolverCloth> cloths;
@@ -473,7 +473,7 @@ void SoftBodySolver::solveStep()
     StepStatistics& statistics = m_state->m_statistics;
     const double waitMs = statistics.m_waitMs, uploadMs = step->uploadMs();
     watch.lapMs();
-    closeStrayed(step->checkStrayed());
+    closeOffPath(step->checkOffPath());
     step->end();
     parts.m_uploadMs = step->uploadMs();
     parts.m_checkMs = watch.lapMs() - (statistics.m_waitMs - waitMs) - (parts.m_uploadMs - uploadMs);

@@ -17,9 +17,9 @@ typedef struct Packet
     CullVolumes m_volumes;
     CullVolume m_joined;
     float m_corners[DRAPE_CORNER_ROWS * DRAPE_LANES];  // corners from which the volumes are made
-    Looker m_lookers[DRAPE_LANES];
+    CullQuery m_queries[DRAPE_LANES];
     NodeIntervals m_nodes[DRAPE_LANES];
-    uint m_looks;  // bit i: whether looker i and its nodes are ready
+    uint m_ready;  // bit i: whether query i and its nodes are ready
 } Packet;
 
 static void takeNodes(Packet* packet, const uint triangle)
@@ -35,14 +35,14 @@ static void takeNodes(Packet* packet, const uint triangle)
                   laneOf(&packet->m_volumes.m_rounding, triangle));
 }
 
-static const Looker* lookerOf(Packet* packet, const StepCloths* cloths, const uint triangle)
+static const CullQuery* queryOf(Packet* packet, const StepCloths* cloths, const uint triangle)
 {
-    Looker* looker = packet->m_lookers + triangle;
-    if (packet->m_looks >> triangle & 1u) return looker;
-    packet->m_looks |= 1u << triangle;
-    look(looker, cloths, packet->m_cloth[triangle], packet->m_motion);
+    CullQuery* query = packet->m_queries + triangle;
+    if (packet->m_ready >> triangle & 1u) return query;
+    packet->m_ready |= 1u << triangle;
+    makeQuery(query, cloths, packet->m_cloth[triangle], packet->m_motion);
     takeNodes(packet, triangle);
-    return looker;
+    return query;
 }
 
 // Returns the triangle's nodes and edges among `owned` that are not proved out of reach of a patch, bits as in
@@ -68,25 +68,25 @@ static uint featuresNear(const Packet* packet, const uint triangle, const uint o
 
 // Lists the feature tests of a pair of cloth triangle and patch: tests of the triangle's nodes and edges among `own`
 // (bits as in Triangle::m_owned), and of its face.
-static void cullPatch(Team* team, const PackedPatches* patches, const FeatureTest pair, const Looker* looker,
+static void cullPatch(SimdGroup* group, const PackedPatches* patches, const FeatureTest pair, const CullQuery* query,
                       const CullReach reach, const uint own, const TestList* list)
 {
     const uint index = pair.m_lane;
     __global const Patch* patch = patches->m_patches + index;
-    const CullTriangle* cull = &looker->m_cull;
+    const CullTriangle* cull = &query->m_cull;
     for (int i = 0; i < 3; ++i)
     {
         if (!(own & DRAPE_OWNS_VERTEX(i))) continue;
         const LaneMask mask =
             cullNodeFace(cull, i, reach, patches->m_faces + index * DRAPE_FACE_FLOATS * DRAPE_PATCH_WIDTH);
-        keepLanes(team, mask, pair, DRAPE_TEST_NODE + i, index * DRAPE_PATCH_WIDTH, list);
+        keepLanes(group, mask, pair, DRAPE_TEST_NODE + i, index * DRAPE_PATCH_WIDTH, list);
     }
     for (uint block = patch->m_vertexBlock;
-         looker->m_valid == DRAPE_ALL_FEATURES && block < patch->m_vertexBlock + patch->m_vertexBlocks; ++block)
+         query->m_valid == DRAPE_ALL_FEATURES && block < patch->m_vertexBlock + patch->m_vertexBlocks; ++block)
     {
         const LaneMask mask =
             cullFaceVertex(cull, reach, patches->m_vertices + block * DRAPE_VERTEX_FLOATS * DRAPE_PATCH_WIDTH);
-        keepLanes(team, mask, pair, DRAPE_TEST_FACE, block * DRAPE_PATCH_WIDTH, list);
+        keepLanes(group, mask, pair, DRAPE_TEST_FACE, block * DRAPE_PATCH_WIDTH, list);
     }
     if (!(own & (DRAPE_OWNS_EDGE(0) | DRAPE_OWNS_EDGE(1) | DRAPE_OWNS_EDGE(2)))) return;
     for (uint block = patch->m_edgeBlock; block < patch->m_edgeBlock + patch->m_edgeBlocks; ++block)
@@ -96,30 +96,30 @@ static void cullPatch(Team* team, const PackedPatches* patches, const FeatureTes
         {
             if (!(own & DRAPE_OWNS_EDGE(i))) continue;
             const LaneMask mask = cullEdgeEdge(cull, i, reach, &edges);
-            keepLanes(team, mask, pair, DRAPE_TEST_EDGE + i, block * DRAPE_PATCH_WIDTH, list);
+            keepLanes(group, mask, pair, DRAPE_TEST_EDGE + i, block * DRAPE_PATCH_WIDTH, list);
         }
     }
 }
 
-static void visitPatch(Team* team, Packet* packet, const StepCloths* cloths, const PackedPatches* patches,
+static void visitPatch(SimdGroup* group, Packet* packet, const StepCloths* cloths, const PackedPatches* patches,
                        const uint triangle, const uint patch, const TestList* list)
 {
     FeatureTest pair;
     if (!pairWith(&pair, cloths, patches, packet->m_cloth[triangle], packet->m_motion, patch)) return;
-    const Looker* looker = lookerOf(packet, cloths, triangle);
-    const CullReach reach = cullReach(&looker->m_cull, pair.m_reach, patches->m_sizes[patch], cloths->m_cloth.m_mode);
-    const uint own = featuresNear(packet, triangle, looker->m_owned & looker->m_valid,
+    const CullQuery* query = queryOf(packet, cloths, triangle);
+    const CullReach reach = cullReach(&query->m_cull, pair.m_reach, patches->m_sizes[patch], cloths->m_cloth.m_mode);
+    const uint own = featuresNear(packet, triangle, query->m_owned & query->m_valid,
                                   patches->m_volumes + patch * DRAPE_WIDE_NODE_FLOATS);
-    if (teamMakeRoom(team, list)) cullPatch(team, patches, pair, looker, reach, own, list);
+    if (simdMakeRoom(group, list)) cullPatch(group, patches, pair, query, reach, own, list);
 }
 
-static void walkTree(Team* team, Packet* packet, const StepCloths* cloths, const PackedPatches* patches,
+static void walkTree(SimdGroup* group, Packet* packet, const StepCloths* cloths, const PackedPatches* patches,
                      const TestList* list)
 {
     uint stack[DRAPE_WALK_STACK];
     uint depth = 1;
     stack[0] = walkEntry(patches->m_levelCount, 0);
-    while (depth > 0 && team->m_place <= list->m_limit)
+    while (depth > 0 && group->m_index <= list->m_limit)
     {
         const uint entry = stack[--depth];
         const uint level = entryLevel(entry), index = entryIndex(entry);
@@ -135,7 +135,7 @@ static void walkTree(Team* team, Packet* packet, const StepCloths* cloths, const
                 continue;
             }
             const LaneMask touching = cullPacketChild(&packet->m_volumes, node + lane);
-            forLanes(triangle, touching) visitPatch(team, packet, cloths, patches, triangle, child, list);
+            forLanes(triangle, touching) visitPatch(group, packet, cloths, patches, triangle, child, list);
         }
     }
 }
@@ -223,15 +223,15 @@ static void cullPacket(const StepCloths* cloths, const PackedPatches* patches, c
         packet.m_radius[lane] =
             first + lane < cloths->m_count ? cloths->m_radius[cloths->m_cloth.m_triangles[cloth].m_mesh] : -1.0f;
     }
-    Team team;
-    teamStart(&team);
-    for (packet.m_motion = 0; packet.m_motion <= cloths->m_motionCount && team.m_place <= list->m_limit;
+    SimdGroup group;
+    simdStart(&group);
+    for (packet.m_motion = 0; packet.m_motion <= cloths->m_motionCount && group.m_index <= list->m_limit;
          ++packet.m_motion)
     {
-        packet.m_looks = 0;
-        if (takeVolumes(&packet, cloths, counters)) walkTree(&team, &packet, cloths, patches, list);
+        packet.m_ready = 0;
+        if (takeVolumes(&packet, cloths, counters)) walkTree(&group, &packet, cloths, patches, list);
     }
-    teamFlush(&team, list);
+    simdFlush(&group, list);
 }
 
 #ifdef __OPENCL_VERSION__

@@ -22,19 +22,19 @@
 #define DRAPE_EDGE_PARTS (DRAPE_VERTEX_PARTS + 3u * DRAPE_PARTS)
 
 // The part of a block to which this lane's position belongs.
-#define DRAPE_OWN_PART (teamLane() % DRAPE_PATCH_WIDTH / DRAPE_PART)
+#define DRAPE_OWN_PART (simdLane() % DRAPE_PATCH_WIDTH / DRAPE_PART)
 
 // Five bits of a task hold a pair's index, its parts are bits of a word, and each pair has a lane.
 typedef char PairsFitTask[DRAPE_CULL_PAIRS <= 32 ? 1 : -1];
 typedef char PairsFitLanes[DRAPE_CULL_PAIRS <= DRAPE_WALK_NODES * DRAPE_PATCH_WIDTH ? 1 : -1];
 typedef char PartsFit[DRAPE_EDGE_PARTS + 3u * DRAPE_PARTS <= 32u ? 1 : -1];
 
-// The current pair. m_looker: index of its cloth triangle's cull query.
+// The current pair. m_query: index of its cloth triangle's cull query.
 typedef struct CullPair
 {
     FeatureTest m_pair;
     CullReach m_reach;
-    uint m_looker;
+    uint m_query;
     uint m_own;    // the triangle's nodes and edges that it owns and that are valid, bits as in Triangle::m_owned
     uint m_all;    // so large compared with the patch that it is near most of it
     uint m_parts;  // bit per part of the patch that the triangle is near
@@ -49,8 +49,8 @@ typedef struct CullPair
 
 typedef struct Culler
 {
-    Team m_team;
-    Looker m_lookers[DRAPE_CULL_PAIRS];  // one per run of pairs with the same triangle and motion
+    SimdGroup m_group;
+    CullQuery m_queries[DRAPE_CULL_PAIRS];  // one per run of pairs with the same triangle and motion
     CullPair m_pairs[DRAPE_CULL_PAIRS];
     ushort m_nodes[DRAPE_CULL_PAIRS * 3 * DRAPE_PARTS];
     ushort m_faces[DRAPE_CULL_PAIRS * 3 * DRAPE_PARTS];
@@ -69,7 +69,7 @@ static int reachesAll(__local const CullTriangle* cull, const CullReach reach, c
 static void takePairs(__local Culler* culler, const StepCloths* cloths, const PackedPatches* patches,
                       __global const FeatureTest* pairs, const uint first, const uint last)
 {
-    const uint lane = teamLane();
+    const uint lane = simdLane();
     const int takes = first + lane < last;
     FeatureTest pair;
     int leads = 0;
@@ -78,33 +78,33 @@ static void takePairs(__local Culler* culler, const StepCloths* cloths, const Pa
         pair = pairs[first + lane];
         leads = lane == 0 || pairs[first + lane - 1].m_cloth != pair.m_cloth ||
                 pairs[first + lane - 1].m_motion != pair.m_motion;
-        culler->m_pairs[lane].m_looker = leads ? lane : DRAPE_CULL_PAIRS;
+        culler->m_pairs[lane].m_query = leads ? lane : DRAPE_CULL_PAIRS;
     }
     if (leads)
     {
-        Looker own;
-        look(&own, cloths, pair.m_cloth, pair.m_motion);
-        culler->m_lookers[lane] = own;
+        CullQuery own;
+        makeQuery(&own, cloths, pair.m_cloth, pair.m_motion);
+        culler->m_queries[lane] = own;
     }
     if (lane < 3) culler->m_counts[lane] = 0;
-    teamSync();
-    uint looker = lane;
-    while (takes && culler->m_pairs[looker].m_looker == DRAPE_CULL_PAIRS)
-        --looker;
-    teamSync();
+    simdSync();
+    uint query = lane;
+    while (takes && culler->m_pairs[query].m_query == DRAPE_CULL_PAIRS)
+        --query;
+    simdSync();
     if (takes)
     {
-        __local const Looker* own = culler->m_lookers + looker;
+        __local const CullQuery* own = culler->m_queries + query;
         CullPair taken;
         taken.m_pair = pair;
         taken.m_reach = cullReach(&own->m_cull, pair.m_reach, patches->m_sizes[pair.m_lane], cloths->m_cloth.m_mode);
-        taken.m_looker = looker;
+        taken.m_query = query;
         taken.m_own = own->m_owned & own->m_valid;
         taken.m_all = reachesAll(&own->m_cull, taken.m_reach, patches->m_sizes[pair.m_lane]);
         taken.m_parts = 0;
         culler->m_pairs[lane] = taken;
     }
-    teamSync();
+    simdSync();
 }
 
 // Marks the parts that contain this lane's face and the features that it owns, if the pair's cloth triangle may be near
@@ -112,7 +112,7 @@ static void takePairs(__local Culler* culler, const StepCloths* cloths, const Pa
 static void markParts(__local CullPair* pair, __local const CullTriangle* cull, const PackedPatches* patches)
 {
     const uint patch = pair->m_pair.m_lane;
-    const uint face = patches->m_faceFeatures[patch * DRAPE_PATCH_WIDTH + teamLane() % DRAPE_PATCH_WIDTH];
+    const uint face = patches->m_faceFeatures[patch * DRAPE_PATCH_WIDTH + simdLane() % DRAPE_PATCH_WIDTH];
     __global const float* faces = patches->m_faces + patch * DRAPE_FACE_FLOATS * DRAPE_PATCH_WIDTH;
     if (!pair->m_all && !cullFaces(cull, pair->m_reach, faces)) return;
     uint parts = 1u << (DRAPE_FACE_PARTS + DRAPE_OWN_PART);
@@ -128,33 +128,33 @@ static void markParts(__local CullPair* pair, __local const CullTriangle* cull, 
 static void listTasks(__local ushort* tasks, volatile __local uint* count, const uint pair, const uint own,
                       const uint parts)
 {
-    uint place = atomic_add(count, popcount(own) * popcount(parts));
+    uint index = atomic_add(count, popcount(own) * popcount(parts));
     for (uint ofOwn = own; ofOwn != 0; ofOwn &= ofOwn - 1)
     {
         const uint feature = 31 - clz(ofOwn & -ofOwn);
         for (uint left = parts; left != 0; left &= left - 1)
-            tasks[place++] = DRAPE_TASK(pair, feature, 31 - clz(left & -left));
+            tasks[index++] = DRAPE_TASK(pair, feature, 31 - clz(left & -left));
     }
 }
 
 // Lists the tests of all current pairs, one lane for each pair and kind.
 static void listAllTasks(__local Culler* culler, const uint count)
 {
-    for (uint i = teamLane(); i < 3 * DRAPE_CULL_PAIRS; i += teamWidth())
+    for (uint i = simdLane(); i < 3 * DRAPE_CULL_PAIRS; i += simdWidth())
     {
-        const uint place = i % DRAPE_CULL_PAIRS, kind = i / DRAPE_CULL_PAIRS;
-        if (place >= count) continue;
-        __local const CullPair* pair = culler->m_pairs + place;
+        const uint index = i % DRAPE_CULL_PAIRS, kind = i / DRAPE_CULL_PAIRS;
+        if (index >= count) continue;
+        __local const CullPair* pair = culler->m_pairs + index;
         const uint own = pair->m_own, parts = pair->m_parts;
         if (kind == 0)
-            listTasks(culler->m_nodes, culler->m_counts, place, own & 7u,
+            listTasks(culler->m_nodes, culler->m_counts, index, own & 7u,
                       parts >> DRAPE_FACE_PARTS & DRAPE_PART_BITS(1));
         else if (kind == 1)
-            listTasks(culler->m_faces, culler->m_counts + 1, place,
-                      culler->m_lookers[pair->m_looker].m_valid == DRAPE_ALL_FEATURES,
+            listTasks(culler->m_faces, culler->m_counts + 1, index,
+                      culler->m_queries[pair->m_query].m_valid == DRAPE_ALL_FEATURES,
                       parts >> DRAPE_VERTEX_PARTS & DRAPE_PART_BITS(3));
         else
-            listTasks(culler->m_edges, culler->m_counts + 2, place, own >> 3 & 7u,
+            listTasks(culler->m_edges, culler->m_counts + 2, index, own >> 3 & 7u,
                       parts >> DRAPE_EDGE_PARTS & DRAPE_PART_BITS(3));
     }
 }
@@ -173,9 +173,9 @@ static void cullNode(__local Culler* culler, const PackedPatches* patches, const
     __local const CullPair* pair = culler->m_pairs + DRAPE_TASK_PAIR(task);
     const uint block = pair->m_pair.m_lane;
     const int shift = partShift(part);
-    const LaneMask mask = cullNodeFace(&culler->m_lookers[pair->m_looker].m_cull, node, pair->m_reach,
+    const LaneMask mask = cullNodeFace(&culler->m_queries[pair->m_query].m_cull, node, pair->m_reach,
                                        patches->m_faces + block * DRAPE_FACE_FLOATS * DRAPE_PATCH_WIDTH + shift);
-    keepLanes(&culler->m_team, mask, pair->m_pair, DRAPE_TEST_NODE + node, block * DRAPE_PATCH_WIDTH + shift, list);
+    keepLanes(&culler->m_group, mask, pair->m_pair, DRAPE_TEST_NODE + node, block * DRAPE_PATCH_WIDTH + shift, list);
 }
 
 // Tests a listed cloth face against a part of vertices.
@@ -185,9 +185,9 @@ static void cullFace(__local Culler* culler, const PackedPatches* patches, const
     __local const CullPair* pair = culler->m_pairs + DRAPE_TASK_PAIR(task);
     const uint block = patches->m_patches[pair->m_pair.m_lane].m_vertexBlock + part / DRAPE_PARTS;
     const int shift = partShift(part);
-    const LaneMask mask = cullFaceVertex(&culler->m_lookers[pair->m_looker].m_cull, pair->m_reach,
+    const LaneMask mask = cullFaceVertex(&culler->m_queries[pair->m_query].m_cull, pair->m_reach,
                                          patches->m_vertices + block * DRAPE_VERTEX_FLOATS * DRAPE_PATCH_WIDTH + shift);
-    keepLanes(&culler->m_team, mask, pair->m_pair, DRAPE_TEST_FACE, block * DRAPE_PATCH_WIDTH + shift, list);
+    keepLanes(&culler->m_group, mask, pair->m_pair, DRAPE_TEST_FACE, block * DRAPE_PATCH_WIDTH + shift, list);
 }
 
 // Tests a listed edge against a part of edges.
@@ -195,19 +195,19 @@ static void cullEdge(__local Culler* culler, const PackedPatches* patches, const
 {
     const uint edge = DRAPE_TASK_FEATURE(task), part = DRAPE_TASK_PART(task);
     __local const CullPair* pair = culler->m_pairs + DRAPE_TASK_PAIR(task);
-    __local const CullTriangle* cull = &culler->m_lookers[pair->m_looker].m_cull;
+    __local const CullTriangle* cull = &culler->m_queries[pair->m_query].m_cull;
     const uint block = patches->m_patches[pair->m_pair.m_lane].m_edgeBlock + part / DRAPE_PARTS;
     const int shift = partShift(part);
     const CullEdges edges =
         loadCullEdges(cull, patches->m_edges + block * DRAPE_EDGE_FLOATS * DRAPE_PATCH_WIDTH + shift);
-    keepLanes(&culler->m_team, cullEdgeEdge(cull, edge, pair->m_reach, &edges), pair->m_pair, DRAPE_TEST_EDGE + edge,
+    keepLanes(&culler->m_group, cullEdgeEdge(cull, edge, pair->m_reach, &edges), pair->m_pair, DRAPE_TEST_EDGE + edge,
               block * DRAPE_PATCH_WIDTH + shift, list);
 }
 
 // Runs all listed tests, each on as many lanes as a part has.
 static void cullTasks(__local Culler* culler, const PackedPatches* patches, const TestList* list)
 {
-    const uint first = teamLane() / DRAPE_PART, stride = teamWidth() / DRAPE_PART;
+    const uint first = simdLane() / DRAPE_PART, stride = simdWidth() / DRAPE_PART;
     for (uint i = first; i < culler->m_counts[0]; i += stride)
         cullNode(culler, patches, culler->m_nodes[i], list);
     for (uint i = first; i < culler->m_counts[1]; i += stride)
@@ -236,23 +236,23 @@ __kernel __attribute__((reqd_work_group_size(DRAPE_WALK_NODES * DRAPE_PATCH_WIDT
 {
     const uint count = min(counters->m_patchPairs, values.m_pairCapacity);
     const uint groups = get_num_groups(0);
-    const uint turn = teamLane() / DRAPE_PATCH_WIDTH, turns = teamWidth() / DRAPE_PATCH_WIDTH;
+    const uint turn = simdLane() / DRAPE_PATCH_WIDTH, turns = simdWidth() / DRAPE_PATCH_WIDTH;
     const uint share = pairsOfGroup(count, groups, turns);
     const StepCloths step = stepCloths(&values, nodes, cloths, 0, 0, motions);
     const PackedPatches packed = patchesAt(patches, &values.m_patches);
     const TestList tests = {list, values.m_capacity, values.m_limit, &counters->m_candidates};
     __local Culler culler;
-    teamStart(&culler.m_team);
+    simdStart(&culler.m_group);
     for (uint first = get_group_id(0) * share; first < count; first += groups * share)
     {
         const uint taken = min(first + share, count) - first;
         takePairs(&culler, &step, &packed, pairs, first, first + taken);
         for (uint i = turn; i < taken; i += turns)
-            markParts(culler.m_pairs + i, &culler.m_lookers[culler.m_pairs[i].m_looker].m_cull, &packed);
-        teamSync();
+            markParts(culler.m_pairs + i, &culler.m_queries[culler.m_pairs[i].m_query].m_cull, &packed);
+        simdSync();
         listAllTasks(&culler, taken);
-        teamSync();
+        simdSync();
         cullTasks(&culler, &packed, &tests);
-        if (!teamFlush(&culler.m_team, &tests)) break;
+        if (!simdFlush(&culler.m_group, &tests)) break;
     }
 }

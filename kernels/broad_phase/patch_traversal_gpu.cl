@@ -10,7 +10,7 @@
 // Local memory of a group.
 typedef struct Walkers
 {
-    Team m_team;
+    SimdGroup m_group;
     uint m_stack[DRAPE_WALK_NODES * DRAPE_WALK_STACK];
     uint m_found[DRAPE_WALK_FOUND];
     uint m_foundCount;
@@ -31,7 +31,7 @@ typedef struct Walk
 static void pairLane(__local Walkers* walkers, const Walk* walk, const StepCloths* cloths, const PackedPatches* patches,
                      const uint first, const uint last, const TestList* list)
 {
-    __local const CullVolume* own = walkers->m_volumes + teamLane() % DRAPE_PATCH_WIDTH;
+    __local const CullVolume* own = walkers->m_volumes + simdLane() % DRAPE_PATCH_WIDTH;
     uint touched = 0;
     FeatureTest pair;
     for (uint i = first; i < last; ++i)
@@ -43,61 +43,61 @@ static void pairLane(__local Walkers* walkers, const Walk* walk, const StepCloth
             pairWith(&pair, cloths, patches, walk->m_cloth, walk->m_motion, patch))
             touched |= 1u << (i - first);
     }
-    uint slot = touched == 0 ? 0 : atomic_add(&walkers->m_team.m_keptCount, popcount(touched));
+    uint kept = touched == 0 ? 0 : atomic_add(&walkers->m_group.m_keptCount, popcount(touched));
     for (; touched != 0; touched &= touched - 1)
     {
         pairWith(&pair, cloths, patches, walk->m_cloth, walk->m_motion,
                  walkers->m_found[first + 31 - clz(touched & -touched)]);
-        teamPut(&walkers->m_team, list, slot++, pair);
+        simdPut(&walkers->m_group, list, kept++, pair);
     }
 }
 
 // Turns the patches found into pairs if there are at least `least`. In a packet the lanes, which had a patch each, now
 // have a triangle each, and each DRAPE_PATCH_WIDTH lanes a share of the patches.
-static void settleFound(__local Walkers* walkers, const Walk* walk, const StepCloths* cloths,
-                        const PackedPatches* patches, const TestList* list, const uint least)
+static void listFound(__local Walkers* walkers, const Walk* walk, const StepCloths* cloths,
+                      const PackedPatches* patches, const TestList* list, const uint least)
 {
-    teamSync();
+    simdSync();
     const uint count = walkers->m_foundCount;
-    teamSync();
+    simdSync();
     if (count < least) return;
-    for (uint i = teamLane(); i < count && walk->m_packet == 1; i += teamWidth())
+    for (uint i = simdLane(); i < count && walk->m_packet == 1; i += simdWidth())
     {
         FeatureTest pair;
         if (pairWith(&pair, cloths, patches, walk->m_cloth, walk->m_motion, walkers->m_found[i]))
-            teamKeep(&walkers->m_team, list, pair);
+            simdKeep(&walkers->m_group, list, pair);
     }
-    const uint turns = teamWidth() / DRAPE_PATCH_WIDTH, turn = teamLane() / DRAPE_PATCH_WIDTH;
-    for (uint first = 0; first < count && walk->m_packet > 1; first += teamWidth())
+    const uint turns = simdWidth() / DRAPE_PATCH_WIDTH, turn = simdLane() / DRAPE_PATCH_WIDTH;
+    for (uint first = 0; first < count && walk->m_packet > 1; first += simdWidth())
     {
-        const uint part = min(count - first, (uint)teamWidth()), share = (part + turns - 1) / turns;
+        const uint part = min(count - first, (uint)simdWidth()), share = (part + turns - 1) / turns;
         pairLane(walkers, walk, cloths, patches, first + min(part, turn * share), first + min(part, (turn + 1) * share),
                  list);
-        if (!teamMakeRoom(&walkers->m_team, list)) break;
+        if (!simdMakeRoom(&walkers->m_group, list)) break;
     }
-    teamSync();
-    if (teamLane() == 0) walkers->m_foundCount = 0;
-    teamSync();
+    simdSync();
+    if (simdLane() == 0) walkers->m_foundCount = 0;
+    simdSync();
 }
 
 static void walkTree(__local Walkers* walkers, const Walk* walk, const StepCloths* cloths, const PackedPatches* patches,
                      const TestList* list)
 {
-    __local Team* team = &walkers->m_team;
+    __local SimdGroup* group = &walkers->m_group;
     __local uint* stack = walkers->m_stack;
-    const uint most = teamWidth() / DRAPE_PATCH_WIDTH;
-    const uint turn = teamLane() / DRAPE_PATCH_WIDTH, lane = teamLane() % DRAPE_PATCH_WIDTH;
-    teamSync();
-    if (teamLane() == 0) team->m_depth = beginWalk(stack, patches->m_levels, patches->m_levelCount);
-    teamSync();
-    while (team->m_depth > 0)
+    const uint most = simdWidth() / DRAPE_PATCH_WIDTH;
+    const uint turn = simdLane() / DRAPE_PATCH_WIDTH, lane = simdLane() % DRAPE_PATCH_WIDTH;
+    simdSync();
+    if (simdLane() == 0) group->m_depth = beginWalk(stack, patches->m_levels, patches->m_levelCount);
+    simdSync();
+    while (group->m_depth > 0)
     {
-        const uint depth = team->m_depth;
+        const uint depth = group->m_depth;
         const uint nodes = nodesInTurn(stack, depth, most);
         const uint entry = stack[depth - 1 - min(turn, nodes - 1)];
-        teamSync();
-        if (teamLane() == 0) team->m_depth = depth - nodes;
-        teamSync();
+        simdSync();
+        if (simdLane() == 0) group->m_depth = depth - nodes;
+        simdSync();
         const uint level = entryLevel(entry), index = entryIndex(entry);
         __global const float* node =
             patches->m_wideNodes + (patches->m_levels[level - 1] + index) * DRAPE_WIDE_NODE_FLOATS * DRAPE_PATCH_WIDTH;
@@ -105,21 +105,21 @@ static void walkTree(__local Walkers* walkers, const Walk* walk, const StepCloth
         if (turn < nodes && cullWideChild(&walkers->m_joined, node + lane))
         {
             if (level > 1)
-                stack[atomic_inc(&team->m_depth)] = walkEntry(level - 1, child);
+                stack[atomic_inc(&group->m_depth)] = walkEntry(level - 1, child);
             else
                 walkers->m_found[atomic_inc(&walkers->m_foundCount)] = child;
         }
-        settleFound(walkers, walk, cloths, patches, list, DRAPE_WALK_FOUND - DRAPE_WALK_NODES * DRAPE_PATCH_WIDTH + 1);
-        if (!teamMakeRoom(team, list)) return;
+        listFound(walkers, walk, cloths, patches, list, DRAPE_WALK_FOUND - DRAPE_WALK_NODES * DRAPE_PATCH_WIDTH + 1);
+        if (!simdMakeRoom(group, list)) return;
     }
-    settleFound(walkers, walk, cloths, patches, list, 1);
+    listFound(walkers, walk, cloths, patches, list, 1);
 }
 
 // Joins a packet's volumes. They are in local memory, since in registers they would leave room for few groups.
 static void joinVolumes(__local Walkers* walkers)
 {
     // Joins the volumes in one direction per lane; one more lane joins their radii.
-    const uint lane = teamLane();
+    const uint lane = simdLane();
     if (lane > DRAPE_DOP_DIRECTIONS) return;
     __local CullVolume* joined = &walkers->m_joined;
     const int ofRadii = lane == DRAPE_DOP_DIRECTIONS;
@@ -150,9 +150,9 @@ static void makeVolumes(__local Walkers* walkers, const Walk* walk, const StepCl
 {
     const ClothView* view = &cloths->m_cloth;
     __global const ObstacleMotion* motion = motionOf(cloths, walk->m_motion);
-    const uint lane = teamLane();
+    const uint lane = simdLane();
     const int alone = walk->m_packet == 1;
-    teamSync();
+    simdSync();
     if (lane < DRAPE_PATCH_WIDTH)
     {
         __local CullVolume* volume = alone ? &walkers->m_joined : walkers->m_volumes + lane;
@@ -177,9 +177,9 @@ static void makeVolumes(__local Walkers* walkers, const Walk* walk, const StepCl
             volume->m_least = near ? least : 0.0f;
         }
     }
-    teamSync();
+    simdSync();
     if (!alone) joinVolumes(walkers);
-    teamSync();
+    simdSync();
 }
 
 #include "broad_phase_views.h"
@@ -193,21 +193,21 @@ __kernel void patchWalk(DRAPE_PATCH_WALK)
     const StepCloths step = stepCloths(&values, nodes, cloths, radius, thickness, motions);
     const PackedPatches packed = patchesAt(patches, &values.m_patches);
     const TestList pairs = {list, values.m_pairCapacity, values.m_pairLimit, &counters->m_patchPairs};
-    const uint group = get_group_id(0), lane = teamLane() % DRAPE_PATCH_WIDTH, count = step.m_count;
+    const uint group = get_group_id(0), lane = simdLane() % DRAPE_PATCH_WIDTH, count = step.m_count;
     const uint leaf = values.m_packet == 1 ? group : group * values.m_packet + lane;
     Walk walk;
     walk.m_packet = values.m_packet;
     walk.m_cloth = step.m_order[min(leaf, count - 1)];
     const float clothRadius = leaf < count ? radius[step.m_cloth.m_triangles[walk.m_cloth].m_mesh] : -1.0f;
     // The last lanes run this while the first make volumes.
-    if (clothRadius >= 0.0f && teamLane() >= teamWidth() - walk.m_packet) countInvalid(&step, walk.m_cloth, counters);
-    if (teamLane() == 0) walkers.m_foundCount = 0;
-    teamStart(&walkers.m_team);
-    for (walk.m_motion = 0; walk.m_motion <= step.m_motionCount && walkers.m_team.m_place <= pairs.m_limit;
+    if (clothRadius >= 0.0f && simdLane() >= simdWidth() - walk.m_packet) countInvalid(&step, walk.m_cloth, counters);
+    if (simdLane() == 0) walkers.m_foundCount = 0;
+    simdStart(&walkers.m_group);
+    for (walk.m_motion = 0; walk.m_motion <= step.m_motionCount && walkers.m_group.m_index <= pairs.m_limit;
          ++walk.m_motion)
     {
         makeVolumes(&walkers, &walk, &step, clothRadius);
         walkTree(&walkers, &walk, &step, &packed, &pairs);
     }
-    teamFlush(&walkers.m_team, &pairs);
+    simdFlush(&walkers.m_group, &pairs);
 }

@@ -1,7 +1,7 @@
 // Arguments of the kernels of cloths with themselves (shared/bindings.h).
 //
 // nodes, cloths, patches: see shared/arenas.h; rest: m, x y z per node. radius, thickness, obstacleRadius: see
-// SelfRadii. pairs: of patches, listed by selfWalk. tests, list: self tests (lib/self_contact.h). contacts, places,
+// SelfRadii. pairs: of patches, listed by selfWalk. tests, list: self tests (lib/self_contact.h). contacts, ranks,
 // featureCounts: see ContactSink. swept: tests that the continuous test decides.
 #ifndef DRAPE_CLOTH_CLOTH_BINDINGS_H
 #define DRAPE_CLOTH_CLOTH_BINDINGS_H
@@ -26,7 +26,7 @@ typedef struct SelfFeatureValues
 {
     ClothLayout m_cloth;
     DRAPE_UINT m_testCapacity;
-    DRAPE_UINT m_firstSlot;  // firstSelfSlot()
+    DRAPE_UINT m_firstFeature;  // firstSelfFeature()
     DRAPE_UINT m_mode;
     float m_reachScale;
     DRAPE_UINT m_contactCapacity;
@@ -53,7 +53,7 @@ DRAPE_NAMESPACE_END
 #define DRAPE_SELF_TESTS                                                                                \
     DRAPE_VALUE(SelfFeatureValues, values), DRAPE_READS(FeatureTest, tests), DRAPE_READS(float, nodes), \
         DRAPE_READS(float, rest), DRAPE_READS(ClothWord, cloths), DRAPE_WRITES(Contact, contacts),      \
-        DRAPE_WRITES(DRAPE_UINT, places), DRAPE_UPDATES(DRAPE_UINT, featureCounts),                     \
+        DRAPE_WRITES(DRAPE_UINT, ranks), DRAPE_UPDATES(DRAPE_UINT, featureCounts),                      \
         DRAPE_UPDATES(StepCounters, counters)
 #define DRAPE_SELF_FEATURE DRAPE_SELF_TESTS, DRAPE_WRITES(DRAPE_UINT, swept)
 #define DRAPE_SELF_SWEPT DRAPE_SELF_TESTS, DRAPE_READS(DRAPE_UINT, swept)

@@ -11,7 +11,7 @@ static SelfPatches selfPatchesAt(__global PatchWord* arena, const SelfPatchLayou
     SelfPatches patches;
     patches.m_patches = (__global const Patch*)(arena + layout->m_patches);
     patches.m_patchCount = layout->m_patchCount;
-    patches.m_places = layout->m_places;
+    patches.m_entries = layout->m_entries;
     patches.m_faceIds = (__global const uint*)(arena + layout->m_faceIds);
     patches.m_vertexIds = (__global const uint*)(arena + layout->m_vertexIds);
     patches.m_edgeIds = (__global const uint*)(arena + layout->m_edgeIds);
@@ -41,7 +41,7 @@ static SelfInput selfInput(const SelfFeatureValues* values, __global const Featu
     input.m_count = min(counters->m_selfTests, values->m_testCapacity);
     input.m_view =
         selfView(clothAt(nodes, cloths, &values->m_cloth, values->m_mode, searches), rest, values->m_reachScale);
-    input.m_firstSlot = values->m_firstSlot;
+    input.m_firstFeature = values->m_firstFeature;
     return input;
 }
 

@@ -11,7 +11,7 @@ static void runSweptSelfTests(const SelfInput* input, const ContactSink* sink, _
     for (ItemRuns runs = itemRuns(count, 1); runs.m_item < count; nextItem(&runs))
     {
         Contact contact;
-        if (selfContact(&input->m_view, input->m_tests[swept[runs.m_item]], input->m_firstSlot, &contact) ==
+        if (selfContact(&input->m_view, input->m_tests[swept[runs.m_item]], input->m_firstFeature, &contact) ==
             DRAPE_IS_CONTACT)
             listContact(sink, &contact);
     }
@@ -28,9 +28,9 @@ __kernel void selfFeature(DRAPE_SELF_FEATURE)
 {
     const SelfInput input = selfInput(&values, tests, counters, nodes, rest, cloths, 0);
     const ContactSink sink =
-        contactSink(contacts, values.m_contactCapacity, places, featureCounts, values.m_sums, counters);
+        contactSink(contacts, values.m_contactCapacity, ranks, featureCounts, values.m_sums, counters);
     for (ItemRuns runs = itemRuns(input.m_count, 1); runs.m_item < input.m_count; nextItem(&runs))
-        testSelf(tests, runs.m_item, &input.m_view, input.m_firstSlot, &sink, swept, counters);
+        testSelf(tests, runs.m_item, &input.m_view, input.m_firstFeature, &sink, swept, counters);
 }
 #endif
 
@@ -40,7 +40,7 @@ __kernel void selfSwept(DRAPE_SELF_SWEPT)
     uint searches = 0;
     const SelfInput input = selfInput(&values, tests, counters, nodes, rest, cloths, &searches);
     const ContactSink sink =
-        contactSink(contacts, values.m_contactCapacity, places, featureCounts, values.m_sums, counters);
+        contactSink(contacts, values.m_contactCapacity, ranks, featureCounts, values.m_sums, counters);
     runSweptSelfTests(&input, &sink, swept, counters);
 }
 #endif

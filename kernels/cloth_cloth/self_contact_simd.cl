@@ -9,7 +9,7 @@ struct LaneWork
 {
     __global const FeatureTest* m_tests;
     SelfView m_view;
-    uint m_firstSlot;
+    uint m_firstFeature;
     ContactSink m_sink;
     __global uint* m_swept;
     __global StepCounters* m_counters;
@@ -22,7 +22,7 @@ static uint kindOf(const LaneWork* work, const uint item)
 
 static void testOne(LaneWork* work, const uint item)
 {
-    testSelf(work->m_tests, item, &work->m_view, work->m_firstSlot, &work->m_sink, work->m_swept, work->m_counters);
+    testSelf(work->m_tests, item, &work->m_view, work->m_firstFeature, &work->m_sink, work->m_swept, work->m_counters);
 }
 
 // Loads the positions of a test: the node and the face's corners, or the ends of both edges.
@@ -75,7 +75,7 @@ static int takeContact(const NearContact* near, const float* rows, const uint la
     const int edges = test.m_motion == DRAPE_SELF_TEST_EDGE;
     const Vec3 origin = rowOf(rows, 3 * (DRAPE_SELF_POSITIONS + (edges ? 2 : 0)), lane);
     int found = DRAPE_IS_CONTACT;
-    nameSelfFeatures(contact, cloth, test, work->m_firstSlot);
+    nameSelfFeatures(contact, cloth, test, work->m_firstFeature);
     if (edges)
         storeNear(near, near->m_point, near->m_weights, contact);
     else
@@ -88,7 +88,7 @@ static int takeContact(const NearContact* near, const float* rows, const uint la
 static void runSelfTests(const SelfInput* input, const ContactSink* sink, __global uint* swept,
                          __global StepCounters* counters)
 {
-    LaneWork work = {input->m_tests, input->m_view, input->m_firstSlot, *sink, swept, counters};
+    LaneWork work = {input->m_tests, input->m_view, input->m_firstFeature, *sink, swept, counters};
     const uint count = input->m_count;
     for (ItemRuns runs = itemRuns(count, 1); runs.m_item < count; nextRun(&runs))
         testRun(&work, runs.m_item, runs.m_end, input->m_view.m_cloth.m_mode, sink);
@@ -102,7 +102,7 @@ __kernel void selfFeature(DRAPE_SELF_FEATURE)
 {
     const SelfInput input = selfInput(&values, tests, counters, nodes, rest, cloths, 0);
     const ContactSink sink =
-        contactSink(contacts, values.m_contactCapacity, places, featureCounts, values.m_sums, counters);
+        contactSink(contacts, values.m_contactCapacity, ranks, featureCounts, values.m_sums, counters);
     runSelfTests(&input, &sink, swept, counters);
 }
 #endif

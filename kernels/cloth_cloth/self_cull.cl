@@ -19,12 +19,11 @@ typedef struct OwnCorners
     uint m_made;  // bit i: boxes of the patch's triangle i are ready
 } OwnCorners;
 
-static const FeatureBox* cornersOf(OwnCorners* corners, const SelfCloth* cloth, const Triangle triangle,
-                                   const uint place)
+static const FeatureBox* cornersOf(OwnCorners* corners, const SelfCloth* cloth, const Triangle triangle, const uint at)
 {
-    FeatureBox* own = corners->m_boxes + 3 * place;
-    if (corners->m_made >> place & 1u) return own;
-    corners->m_made |= 1u << place;
+    FeatureBox* own = corners->m_boxes + 3 * at;
+    if (corners->m_made >> at & 1u) return own;
+    corners->m_made |= 1u << at;
     for (int k = 0; k < 3; ++k)
         own[k] = nodeBox(cloth->m_start, cloth->m_end, triangle.m_vertices[k], cloth->m_radius);
     return own;
@@ -40,17 +39,17 @@ static LaneMask lanesWithout(__global const uint* rows, const uint block, const 
     return without;
 }
 
-// Tests triangle `place` of patch `own` against the features of patch `other`, which is the same or a later one.
+// Tests triangle `at` of patch `own` against the features of patch `other`, which is the same or a later one.
 // Within a patch every node is tested against every face from the node's side, and of two edges the one with the
 // lesser index finds the other. box: of patch `other`.
-static void pairTriangle(Team* team, const SelfCloths* cloths, OwnCorners* corners, const uint own, const uint place,
+static void pairTriangle(SimdGroup* group, const SelfCloths* cloths, OwnCorners* corners, const uint own, const uint at,
                          const uint other, const FeatureBox* box, const TestList* list)
 {
     const SelfCloth* cloth = &cloths->m_cloth;
-    const uint face = cloths->m_patches.m_faceIds[own * DRAPE_PATCH_WIDTH + place];
+    const uint face = cloths->m_patches.m_faceIds[own * DRAPE_PATCH_WIDTH + at];
     const Triangle triangle = cloth->m_triangles[face];
     const Patch patch = cloths->m_patches.m_patches[other];
-    const FeatureBox* corner = cornersOf(corners, cloth, triangle, place);
+    const FeatureBox* corner = cornersOf(corners, cloth, triangle, at);
     const BoxLanes faces = loadBoxes(cloths->m_patches.m_faceBoxes + other * DRAPE_BOX_FLOATS * DRAPE_PATCH_WIDTH);
     for (int k = 0; k < 3; ++k)
     {
@@ -58,8 +57,8 @@ static void pairTriangle(Team* team, const SelfCloths* cloths, OwnCorners* corne
         const LaneMask mask = boxesOverlap(&faces, &corner[k]) &
                               lanesWithout(cloths->m_patches.m_faceNodes, other, 3, triangle.m_vertices[k]);
         forLanes(lane, mask)
-            keepPair(team, cloth, triangle.m_vertices[k], cloths->m_patches.m_faceIds[other * DRAPE_PATCH_WIDTH + lane],
-                     DRAPE_SELF_TEST_NODE, list);
+            keepPair(group, cloth, triangle.m_vertices[k],
+                     cloths->m_patches.m_faceIds[other * DRAPE_PATCH_WIDTH + lane], DRAPE_SELF_TEST_NODE, list);
     }
     const FeatureBox whole = joinBoxes(joinBoxes(corner[0], corner[1]), corner[2]);
     for (uint block = patch.m_vertexBlock; own != other && block < patch.m_vertexBlock + patch.m_vertexBlocks; ++block)
@@ -69,7 +68,7 @@ static void pairTriangle(Team* team, const SelfCloths* cloths, OwnCorners* corne
         LaneMask mask = boxesOverlap(&vertices, &whole);
         for (int k = 0; k < 3; ++k)
             mask &= lanesWithout(cloths->m_patches.m_vertexIds, block, 1, triangle.m_vertices[k]);
-        forLanes(lane, mask) keepPair(team, cloth, cloths->m_patches.m_vertexIds[block * DRAPE_PATCH_WIDTH + lane],
+        forLanes(lane, mask) keepPair(group, cloth, cloths->m_patches.m_vertexIds[block * DRAPE_PATCH_WIDTH + lane],
                                       face, DRAPE_SELF_TEST_NODE, list);
     }
     FeatureBox edgeBox[3];
@@ -95,28 +94,28 @@ static void pairTriangle(Team* team, const SelfCloths* cloths, OwnCorners* corne
                 const uint edge = cloths->m_patches.m_edgeIds[block * DRAPE_PATCH_WIDTH + lane],
                            mine = triangle.m_edges[k];
                 if (own != other || mine < edge)
-                    keepPair(team, cloth, min(mine, edge), max(mine, edge), DRAPE_SELF_TEST_EDGE, list);
+                    keepPair(group, cloth, min(mine, edge), max(mine, edge), DRAPE_SELF_TEST_EDGE, list);
             }
         }
     }
 }
 
 // Returns whether the list is within its limit.
-static int pairPatches(Team* team, const SelfCloths* cloths, OwnCorners* corners, const uint own, const uint other,
-                       const TestList* list)
+static int pairPatches(SimdGroup* group, const SelfCloths* cloths, OwnCorners* corners, const uint own,
+                       const uint other, const TestList* list)
 {
     const FeatureBox box = childBox(cloths->m_patches.m_wideNodes, other);
     const BoxLanes faces = loadBoxes(cloths->m_patches.m_faceBoxes + own * DRAPE_BOX_FLOATS * DRAPE_PATCH_WIDTH);
     const LaneMask near = boxesOverlap(&faces, &box);
-    forLanes(place, near)
+    forLanes(at, near)
     {
-        pairTriangle(team, cloths, corners, own, place, other, &box, list);
-        if (!teamMakeRoom(team, list)) return 0;
+        pairTriangle(group, cloths, corners, own, at, other, &box, list);
+        if (!simdMakeRoom(group, list)) return 0;
     }
     return 1;
 }
 
-static void walkSelf(Team* team, const SelfCloths* cloths, const uint own, const TestList* list)
+static void walkSelf(SimdGroup* group, const SelfCloths* cloths, const uint own, const TestList* list)
 {
     uint stack[DRAPE_WALK_STACK];
     uint depth = 1;
@@ -139,7 +138,7 @@ static void walkSelf(Team* team, const SelfCloths* cloths, const uint own, const
             if (level > 1)
                 stack[depth++] = walkEntry(level - 1, next);
             else if (cloths->m_patches.m_patches[next].m_mesh == cloths->m_patches.m_patches[own].m_mesh &&
-                     !pairPatches(team, cloths, &corners, own, next, list))
+                     !pairPatches(group, cloths, &corners, own, next, list))
                 return;
         }
     }
@@ -156,10 +155,10 @@ static void cullSelf(const ClothView* cloth, const SelfRadii* radii, const SelfP
     const SelfCloths cloths = {
         {cloth->m_triangles, cloth->m_edges, volumeStart(cloth), cloth->m_end, radius, radii->m_thickness[mesh]},
         *patches};
-    Team team;
-    teamStart(&team);
-    walkSelf(&team, &cloths, own, list);
-    teamFlush(&team, list);
+    SimdGroup group;
+    simdStart(&group);
+    walkSelf(&group, &cloths, own, list);
+    simdFlush(&group, list);
 }
 
 #ifdef __OPENCL_VERSION__

@@ -4,14 +4,14 @@
 #include "../lib/invalid_nodes.h"
 #include "../lib/self_cull.h"
 #include "../lib/self_views.h"
-#include "../lib/team.h"
+#include "../lib/simd_group.h"
 
 // Rows of a node of each lane's feature: x y z at the step's start and at its end.
 #define DRAPE_NODE_ROWS (6 * DRAPE_LANES)
 
 typedef struct NodeLanes
 {
-    LanesVec3 m_place[2];
+    LanesVec3 m_position[2];
     LaneMask m_valid;
 } NodeLanes;
 
@@ -33,7 +33,7 @@ static void putNode(float* rows, const uint lane, __global const float* start, _
 }
 
 // See positionIsValid().
-static LaneMask placesValid(const LanesVec3 p)
+static LaneMask positionsValid(const LanesVec3 p)
 {
     return (lanesAbs(p.x) <= DRAPE_FARTHEST) & (lanesAbs(p.y) <= DRAPE_FARTHEST) & (lanesAbs(p.z) <= DRAPE_FARTHEST);
 }
@@ -42,8 +42,8 @@ static NodeLanes getNodes(const float* rows)
 {
     NodeLanes nodes;
     for (int i = 0; i < 2; ++i)
-        nodes.m_place[i] = lanesVec3(lanesLoad(rows, 3 * i), lanesLoad(rows, 3 * i + 1), lanesLoad(rows, 3 * i + 2));
-    nodes.m_valid = placesValid(nodes.m_place[0]) & placesValid(nodes.m_place[1]);
+        nodes.m_position[i] = lanesVec3(lanesLoad(rows, 3 * i), lanesLoad(rows, 3 * i + 1), lanesLoad(rows, 3 * i + 2));
+    nodes.m_valid = positionsValid(nodes.m_position[0]) & positionsValid(nodes.m_position[1]);
     return nodes;
 }
 
@@ -56,7 +56,7 @@ static void growLanes(Lanes* low, Lanes* high, const NodeLanes* nodes, const int
     for (int k = 0; k < 2 * count; ++k)
     {
         const NodeLanes* node = nodes + k / 2;
-        const LanesVec3 p = node->m_place[k % 2];
+        const LanesVec3 p = node->m_position[k % 2];
         const Lanes v = projectLanes(p, direction);
         least = lanesSelect(node->m_valid, lanesMin(least, v), least);
         greatest = lanesSelect(node->m_valid, lanesMax(greatest, v), greatest);
@@ -157,7 +157,7 @@ static void packSelf(const ClothView* cloth, const SelfRadii* radii, const SelfP
 __kernel void selfPack(DRAPE_SELF_PACK)
 {
     const uint index = get_global_id(0);
-    if (index >= values.m_patches.m_places) return;
+    if (index >= values.m_patches.m_entries) return;
     const ClothView cloth = clothAt(nodes, cloths, &values.m_cloth, values.m_mode, 0);
     const SelfRadii radii = {radius, 0, obstacleRadius};
     const SelfPatches packed = selfPatchesAt(patches, &values.m_patches);

@@ -15,7 +15,7 @@ typedef struct SelfWalker
     uint m_depth;
     uint m_kept[DRAPE_WALK_KEPT];  // patches
     uint m_keptCount;
-    uint m_place;
+    uint m_index;
 } SelfWalker;
 
 // Lists the kept patches if there are at least `least`; all lanes together. Returns whether the list is within its
@@ -29,22 +29,22 @@ static int listPatches(__local SelfWalker* walker, const uint own, __global Cand
     if (count < least) return 1;
     if (get_local_id(0) == 0)
     {
-        walker->m_place = atomic_add(demand, count);
+        walker->m_index = atomic_add(demand, count);
         walker->m_keptCount = 0;
     }
     barrier(CLK_LOCAL_MEM_FENCE);
-    const uint place = walker->m_place;
+    const uint index = walker->m_index;
     for (uint i = get_local_id(0); i < count; i += get_local_size(0))
     {
         const Candidate pair = {own, walker->m_kept[i]};
-        if (place + i < capacity) list[place + i] = pair;
+        if (index + i < capacity) list[index + i] = pair;
     }
     barrier(CLK_LOCAL_MEM_FENCE);
-    return place <= limit;
+    return index <= limit;
 }
 
 // Lists the pairs of a patch, one patch per work-group. The tree's volumes are those of selfPack, joined by patchWiden.
-// radius: see selfPack. Past the limit a group ends: see lib/team.h. counters->m_selfPairs must be zero before.
+// radius: see selfPack. Past the limit a group ends: see lib/simd_group.h. counters->m_selfPairs must be zero before.
 __kernel __attribute__((reqd_work_group_size(DRAPE_WALK_NODES * DRAPE_PATCH_WIDTH, 1, 1))) void selfWalk(
     DRAPE_SELF_WALK)
 {
@@ -125,37 +125,37 @@ typedef struct NearSide
 
 typedef struct SelfCuller
 {
-    Team m_team;
+    SimdGroup m_group;
     NearSide m_sides[2];                            // first and second patch of the pair
     uint m_nearA[DRAPE_NEAR], m_nearB[DRAPE_NEAR];  // pairs of features, kind above the second
     uint m_nearCount;
 } SelfCuller;
 
 // Stores a box, or an empty one if it does not meet the other patch's: its lower bound is not finite then.
-static void putBox(__local float* boxes, const uint width, const uint place, FeatureBox box, const FeatureBox* other)
+static void putBox(__local float* boxes, const uint width, const uint index, FeatureBox box, const FeatureBox* other)
 {
     if (!boxesMeet(&box, other)) box = emptyBox();
     for (int i = 0; i < 3; ++i)
     {
-        boxes[i * width + place] = box.m_low[i];
-        boxes[(3 + i) * width + place] = box.m_high[i];
+        boxes[i * width + index] = box.m_low[i];
+        boxes[(3 + i) * width + index] = box.m_high[i];
     }
 }
 
-static FeatureBox takeBox(__local const float* boxes, const uint width, const uint place)
+static FeatureBox takeBox(__local const float* boxes, const uint width, const uint index)
 {
     FeatureBox box;
     for (int i = 0; i < 3; ++i)
     {
-        box.m_low[i] = boxes[i * width + place];
-        box.m_high[i] = boxes[(3 + i) * width + place];
+        box.m_low[i] = boxes[i * width + index];
+        box.m_high[i] = boxes[(3 + i) * width + index];
     }
     return box;
 }
 
-static int isNear(__local const float* boxes, const uint place)
+static int isNear(__local const float* boxes, const uint index)
 {
-    return boxes[place] < DRAPE_INFINITY;
+    return boxes[index] < DRAPE_INFINITY;
 }
 
 static FeatureBox loadNode(const SelfPatches* features, const uint node)
@@ -169,7 +169,7 @@ static FeatureBox loadNode(const SelfPatches* features, const uint node)
     return box;
 }
 
-static void gatherFace(__local NearFaces* near, const SelfCloth* cloth, const SelfPatches* features, const uint place,
+static void gatherFace(__local NearFaces* near, const SelfCloth* cloth, const SelfPatches* features, const uint index,
                        const uint face, const FeatureBox* other)
 {
     FeatureBox box = emptyBox();
@@ -177,22 +177,22 @@ static void gatherFace(__local NearFaces* near, const SelfCloth* cloth, const Se
     {
         const uint vertex = cloth->m_triangles[face].m_vertices[k];
         box = joinBoxes(box, loadNode(features, vertex));
-        near->m_nodes[3 * place + k] = vertex;
+        near->m_nodes[3 * index + k] = vertex;
     }
-    putBox(near->m_boxes, DRAPE_PATCH_WIDTH, place, box, other);
-    near->m_ids[place] = face;
+    putBox(near->m_boxes, DRAPE_PATCH_WIDTH, index, box, other);
+    near->m_ids[index] = face;
 }
 
-static void gatherVertex(__local NearVertices* near, const SelfPatches* features, const uint place, const uint vertex,
+static void gatherVertex(__local NearVertices* near, const SelfPatches* features, const uint index, const uint vertex,
                          const FeatureBox* other)
 {
     FeatureBox box = emptyBox();
     if (vertex != DRAPE_NO_FEATURE) box = loadNode(features, vertex);
-    putBox(near->m_boxes, DRAPE_OWNED_MOST, place, box, other);
-    near->m_ids[place] = vertex;
+    putBox(near->m_boxes, DRAPE_OWNED_MOST, index, box, other);
+    near->m_ids[index] = vertex;
 }
 
-static void gatherEdge(__local NearEdges* near, const SelfCloth* cloth, const SelfPatches* features, const uint place,
+static void gatherEdge(__local NearEdges* near, const SelfCloth* cloth, const SelfPatches* features, const uint index,
                        const uint edge, const FeatureBox* other)
 {
     FeatureBox box = emptyBox();
@@ -200,10 +200,10 @@ static void gatherEdge(__local NearEdges* near, const SelfCloth* cloth, const Se
     {
         const uint vertex = cloth->m_edges[edge].m_vertices[k];
         box = joinBoxes(box, loadNode(features, vertex));
-        near->m_nodes[2 * place + k] = vertex;
+        near->m_nodes[2 * index + k] = vertex;
     }
-    putBox(near->m_boxes, DRAPE_OWNED_MOST, place, box, other);
-    near->m_ids[place] = edge;
+    putBox(near->m_boxes, DRAPE_OWNED_MOST, index, box, other);
+    near->m_ids[index] = edge;
 }
 
 // Gathers the faces of both patches, one per lane. boxes: the patches'. Returns whether either has a face near the
@@ -253,14 +253,14 @@ static void gatherSide(__local NearSide* side, const SelfCloth* cloth, const Sel
 static void noteNear(__local SelfCuller* culler, const SelfCloth* cloth, const uint a, const uint b, const uint kind,
                      const TestList* list)
 {
-    const uint slot = atomic_inc(&culler->m_nearCount);
-    if (slot >= DRAPE_NEAR)
+    const uint noted = atomic_inc(&culler->m_nearCount);
+    if (noted >= DRAPE_NEAR)
     {
-        keepPair(&culler->m_team, cloth, a, b, kind, list);
+        keepPair(&culler->m_group, cloth, a, b, kind, list);
         return;
     }
-    culler->m_nearA[slot] = a;
-    culler->m_nearB[slot] = b | (kind << DRAPE_KIND_SHIFT);
+    culler->m_nearA[noted] = a;
+    culler->m_nearB[noted] = b | (kind << DRAPE_KIND_SHIFT);
 }
 
 // Tests nodes of one side against faces of the other: lanes have nodes, and each DRAPE_PATCH_WIDTH of them a share of
@@ -324,12 +324,12 @@ static void crossPatches(__local SelfCuller* culler, const SelfCloth* cloth, con
 
 // Tests the noted pairs, one per lane, if there are at least `least`. All lanes call it together. Returns whether the
 // list is within its limit.
-static int settleNear(__local SelfCuller* culler, const SelfCloth* cloth, const TestList* list, const uint least)
+static int listNear(__local SelfCuller* culler, const SelfCloth* cloth, const TestList* list, const uint least)
 {
     barrier(CLK_LOCAL_MEM_FENCE);
     const uint count = min(culler->m_nearCount, (uint)DRAPE_NEAR);
     barrier(CLK_LOCAL_MEM_FENCE);
-    int within = teamMakeRoom(&culler->m_team, list);
+    int within = simdMakeRoom(&culler->m_group, list);
     if (count < least) return within;
     for (uint first = 0; first < count && within; first += get_local_size(0))
     {
@@ -337,18 +337,18 @@ static int settleNear(__local SelfCuller* culler, const SelfCloth* cloth, const 
         if (i < count)
         {
             const uint b = culler->m_nearB[i];
-            keepPair(&culler->m_team, cloth, culler->m_nearA[i], b & ((1u << DRAPE_KIND_SHIFT) - 1u),
+            keepPair(&culler->m_group, cloth, culler->m_nearA[i], b & ((1u << DRAPE_KIND_SHIFT) - 1u),
                      b >> DRAPE_KIND_SHIFT, list);
         }
-        within = teamMakeRoom(&culler->m_team, list);
+        within = simdMakeRoom(&culler->m_group, list);
     }
     if (get_local_id(0) == 0) culler->m_nearCount = 0;
     barrier(CLK_LOCAL_MEM_FENCE);
     return within;
 }
 
-// Lists the self tests of the pairs of patches in selfWalk's list. limit: see lib/team.h; counters->m_selfTests must be
-// zero before.
+// Lists the self tests of the pairs of patches in selfWalk's list. limit: see lib/simd_group.h; counters->m_selfTests
+// must be zero before.
 __kernel __attribute__((reqd_work_group_size(DRAPE_WALK_NODES * DRAPE_PATCH_WIDTH, 1, 1))) void selfCullPairs(
     DRAPE_SELF_CULL_PAIRS)
 {
@@ -360,19 +360,19 @@ __kernel __attribute__((reqd_work_group_size(DRAPE_WALK_NODES * DRAPE_PATCH_WIDT
     SelfCloth cloth = {view.m_triangles, view.m_edges, volumeStart(&view), view.m_end, 0.0f, 0.0f};
     uint mesh = DRAPE_NO_FEATURE;
     if (get_local_id(0) == 0) culler.m_nearCount = 0;
-    teamStart(&culler.m_team);
+    simdStart(&culler.m_group);
     for (uint i = get_group_id(0); i < count; i += get_num_groups(0))
     {
         const Candidate pair = pairs[i];
         const uint next = packed.m_patches[pair.m_cloth].m_mesh;
         // Tests the noted pairs with their own cloth's radius before it changes.
-        if (next != mesh && !settleNear(&culler, &cloth, &tests, 1)) return;
+        if (next != mesh && !listNear(&culler, &cloth, &tests, 1)) return;
         mesh = next;
         cloth.m_radius = radius[mesh];
         cloth.m_thickness = thickness[mesh];
         crossPatches(&culler, &cloth, &packed, pair, &tests);
-        if (!settleNear(&culler, &cloth, &tests, get_local_size(0))) return;
+        if (!listNear(&culler, &cloth, &tests, get_local_size(0))) return;
     }
-    settleNear(&culler, &cloth, &tests, 1);
-    teamFlush(&culler.m_team, &tests);
+    listNear(&culler, &cloth, &tests, 1);
+    simdFlush(&culler.m_group, &tests);
 }

@@ -132,7 +132,8 @@ DRAPE_FUNCTION DRAPE_UINT prepareCull(CullTriangle* cull, const DRAPE_GLOBAL flo
 }
 
 // size: m, of the block's features together.
-DRAPE_FUNCTION CullReach cullReach(const DRAPE_TEAM CullTriangle* cull, float reach, float size, DRAPE_UINT mode)
+DRAPE_FUNCTION CullReach cullReach(const DRAPE_GROUP_MEMORY CullTriangle* cull, float reach, float size,
+                                   DRAPE_UINT mode)
 {
     CullReach result;
     result.m_slack = DRAPE_CULL_SLACK * (cull->m_diameter + size + 2.0f * reach);
@@ -146,7 +147,8 @@ DRAPE_FUNCTION CullReach cullReach(const DRAPE_TEAM CullTriangle* cull, float re
 // Selects faces of which a corner, an edge or the inside may be near the cloth triangle. Contacts in any direction
 // have one reach; beside the face the reach is only as far as the features' cones admit the direction (see
 // cone_reach.h). Faces with NaN corners are kept, since a corner may be valid.
-DRAPE_FUNCTION LaneMask cullFaces(const DRAPE_TEAM CullTriangle* cull, CullReach reach, const DRAPE_GLOBAL float* block)
+DRAPE_FUNCTION LaneMask cullFaces(const DRAPE_GROUP_MEMORY CullTriangle* cull, CullReach reach,
+                                  const DRAPE_GLOBAL float* block)
 {
     const LanesVec3 a = lanesLoadVec3(block, 0), b = lanesLoadVec3(block, 3), c = lanesLoadVec3(block, 6);
     const LanesVec3 ab = lanesSub(b, a), bc = lanesSub(c, b), ca = lanesSub(a, c);
@@ -171,7 +173,7 @@ DRAPE_FUNCTION LaneMask cullFaces(const DRAPE_TEAM CullTriangle* cull, CullReach
 }
 
 // Returns the vertices whose nearest point of the cloth triangle at the step's end is certainly a corner.
-DRAPE_FUNCTION LaneMask cullAtNode(const DRAPE_TEAM CullTriangle* cull, LanesVec3 v, float slack)
+DRAPE_FUNCTION LaneMask cullAtNode(const DRAPE_GROUP_MEMORY CullTriangle* cull, LanesVec3 v, float slack)
 {
     const Lanes place0 = lanesDotUniform(v, cull->m_along[0]);
     const Lanes place1 = lanesDotUniform(lanesSubUniform(v, cull->m_end[1]), cull->m_along[1]);
@@ -183,7 +185,7 @@ DRAPE_FUNCTION LaneMask cullAtNode(const DRAPE_TEAM CullTriangle* cull, LanesVec
 }
 
 // The cloth face against vertices.
-DRAPE_FUNCTION LaneMask cullFaceVertex(const DRAPE_TEAM CullTriangle* cull, CullReach reach,
+DRAPE_FUNCTION LaneMask cullFaceVertex(const DRAPE_GROUP_MEMORY CullTriangle* cull, CullReach reach,
                                        const DRAPE_GLOBAL float* block)
 {
     const LanesVec3 v = lanesSubUniform(lanesLoadVec3(block, 0), cull->m_origin);
@@ -225,7 +227,7 @@ DRAPE_FUNCTION LaneMask cullFaceVertex(const DRAPE_TEAM CullTriangle* cull, Cull
 
 // Tests cloth node i against faces. Compares squares of distances times the face's area or edge, so that no lane needs
 // a root.
-DRAPE_FUNCTION LaneMask cullNodeFace(const DRAPE_TEAM CullTriangle* cull, int i, CullReach reach,
+DRAPE_FUNCTION LaneMask cullNodeFace(const DRAPE_GROUP_MEMORY CullTriangle* cull, int i, CullReach reach,
                                      const DRAPE_GLOBAL float* block)
 {
     const LanesVec3 a = lanesLoadVec3(block, 0), b = lanesLoadVec3(block, 3), c = lanesLoadVec3(block, 6);
@@ -274,7 +276,7 @@ typedef struct CullEdges
     Lanes m_length, m_square;
 } CullEdges;
 
-DRAPE_FUNCTION CullEdges loadCullEdges(const DRAPE_TEAM CullTriangle* cull, const DRAPE_GLOBAL float* block)
+DRAPE_FUNCTION CullEdges loadCullEdges(const DRAPE_GROUP_MEMORY CullTriangle* cull, const DRAPE_GLOBAL float* block)
 {
     CullEdges edges;
     edges.m_a = lanesSubUniform(lanesLoadVec3(block, 0), cull->m_origin);
@@ -288,7 +290,7 @@ DRAPE_FUNCTION CullEdges loadCullEdges(const DRAPE_TEAM CullTriangle* cull, cons
 }
 
 // Cloth edge i against edges.
-DRAPE_FUNCTION LaneMask cullEdgeEdge(const DRAPE_TEAM CullTriangle* cull, int i, CullReach reach,
+DRAPE_FUNCTION LaneMask cullEdgeEdge(const DRAPE_GROUP_MEMORY CullTriangle* cull, int i, CullReach reach,
                                      const CullEdges* edges)
 {
     const int j = i == 2 ? 0 : i + 1;
@@ -403,7 +405,7 @@ DRAPE_FUNCTION int cullMeets(const CullCorners* corners, float radius, const DRA
 
 // Returns whether the triangle is not proved out of reach of one child of a wide node (patch.h), along the features'
 // directions.
-DRAPE_FUNCTION int cullWideChild(const DRAPE_TEAM CullVolume* cull, const DRAPE_GLOBAL float* child)
+DRAPE_FUNCTION int cullWideChild(const DRAPE_GROUP_MEMORY CullVolume* cull, const DRAPE_GLOBAL float* child)
 {
     int near = 1;
     for (int i = 0; i < DRAPE_DOP_DIRECTIONS; ++i)
@@ -417,7 +419,7 @@ DRAPE_FUNCTION int cullWideChild(const DRAPE_TEAM CullVolume* cull, const DRAPE_
 }
 
 // Tests all children of the node at once.
-DRAPE_FUNCTION LaneMask cullWideNode(const DRAPE_TEAM CullVolume* cull, const DRAPE_GLOBAL float* node)
+DRAPE_FUNCTION LaneMask cullWideNode(const DRAPE_GROUP_MEMORY CullVolume* cull, const DRAPE_GLOBAL float* node)
 {
     LaneMask near = lanesMaskSplat(1);
     DRAPE_UNROLL

@@ -9,7 +9,7 @@
 
 #include "ccd.h"
 #include "feature_contact.h"
-#include "ways.h"
+#include "paths.h"
 
 DRAPE_NAMESPACE_BEGIN
 
@@ -95,7 +95,7 @@ DRAPE_FUNCTION Meeting meetFeatures(DRAPE_UINT kind, const Vec3 start[4], const 
     const CcdResult result = ccdRun(&vectors, kind == DRAPE_VERTEX_FACE, settings);
     Meeting meeting;
     meeting.m_met =
-        result.m_hit && waysOverlap(start, end, kind == DRAPE_VERTEX_FACE ? 1 : 2, DRAPE_WAY_REACH * bounds.m_reach);
+        result.m_hit && pathsOverlap(start, end, kind == DRAPE_VERTEX_FACE ? 1 : 2, DRAPE_PATH_REACH * bounds.m_reach);
     meeting.m_time = meeting.m_place = result.m_time;
     if (meeting.m_met)
     {

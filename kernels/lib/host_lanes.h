@@ -1,5 +1,5 @@
 // Vectors of lanes in C++, as vector types of GCC and Clang: the base of lanes.h in the host's kernels, and the mask
-// functions for team.h. Included by lanes.h, within its namespace.
+// functions for simd_group.h. Included by lanes.h, within its namespace.
 #ifndef DRAPE_LIB_HOST_LANES_H
 #define DRAPE_LIB_HOST_LANES_H
 

@@ -13,7 +13,7 @@
 
 DRAPE_NAMESPACE_BEGIN
 
-// The words of the texts that differ on lanes. Lanes for which these lack something stay open; see settleLanes().
+// The words of the texts that differ on lanes. Lanes for which these lack something stay open; see decideLanes().
 DRAPE_FUNCTION Lanes drapeAbs(Lanes a)
 {
     return lanesAbs(a);
@@ -126,7 +126,7 @@ DRAPE_FUNCTION NearContact nearOfLane(const LanesNear* lanes, DRAPE_UINT lane, i
 // Stores which lanes have a contact and which stay open. `open` are the lanes whose exception does not depend on the
 // contact. count: rows of positions. Leaves lanes open where positions may be invalid, and found ones where the
 // features touch, are at the edge of the reach, or have a distance too small to divide by.
-DRAPE_FUNCTION void settleLanes(LaneContacts* contacts, LaneMask found, LaneMask open, LanesBounds bounds,
+DRAPE_FUNCTION void decideLanes(LaneContacts* contacts, LaneMask found, LaneMask open, LanesBounds bounds,
                                 const float* rows, int count)
 {
     const Lanes distance = contacts->m_near.m_distance;
@@ -134,7 +134,7 @@ DRAPE_FUNCTION void settleLanes(LaneContacts* contacts, LaneMask found, LaneMask
     for (int row = 0; row < count; ++row)
         sum += lanesAbs(lanesLoad(rows, row));
     const LaneMask plain = (distance > 1e-18f) & (distance > DRAPE_SEAM * bounds.m_extent) &
-                           lanesNot(distance > bounds.m_reach - DRAPE_WAY_ROUNDING * bounds.m_extent);
+                           lanesNot(distance > bounds.m_reach - DRAPE_PATH_ROUNDING * bounds.m_extent);
     contacts->m_open = open | lanesNot(sum <= DRAPE_FARTHEST) | (found & lanesNot(plain));
     contacts->m_found = found & lanesNot(contacts->m_open);
 }
@@ -157,7 +157,7 @@ DRAPE_FUNCTION void laneNodeFace(LaneContacts* contacts, const float* rows, DRAP
     const LanesNodeFace pair = nodeFace(laneRow(rows, 0), laneRow(rows, 3), laneRow(rows, 6), laneRow(rows, 9),
                                         laneRow(rows, 12), lanesLoad(rows, DRAPE_NODE_FACE_ROWS - 1), mode, 0);
     const LaneMask found = lanesNot(nodeIsFarFromPlane(&pair)) & nodeNearFace(&pair, pair.m_side, &contacts->m_near);
-    settleLanes(contacts, found, pair.m_area.m_thin | pair.m_passed, pair.m_bounds, rows, 15);
+    decideLanes(contacts, found, pair.m_area.m_thin | pair.m_passed, pair.m_bounds, rows, 15);
 }
 
 // See faceVertexContact().
@@ -169,7 +169,7 @@ DRAPE_FUNCTION void laneFaceVertex(LaneContacts* contacts, const float* rows, DR
         movingFace(start, end, vertex, vertex, lanesLoad(rows, DRAPE_FACE_VERTEX_ROWS - 1), mode, 0);
     const LanesNearest nearest = nearestOfFace(&face);
     const LaneMask found = faceNearVertex(&face, &nearest, laneCones(rows, 21), &contacts->m_near);
-    settleLanes(contacts, found, face.m_areaEnd.m_thin | lanesMayMeet(&face, &nearest), face.m_bounds, rows, 21);
+    decideLanes(contacts, found, face.m_areaEnd.m_thin | lanesMayMeet(&face, &nearest), face.m_bounds, rows, 21);
 }
 
 // See edgeEdgeContact().
@@ -179,7 +179,7 @@ DRAPE_FUNCTION void laneEdgeEdge(LaneContacts* contacts, const float* rows, DRAP
     const LanesVec3 end[4] = {laneRow(rows, 6), laneRow(rows, 9), start[2], start[3]};
     const LanesEdgePair pair = edgePair(start, end, lanesLoad(rows, DRAPE_EDGE_EDGE_ROWS - 1), mode, 0);
     const LaneMask found = edgesNearWithin(&pair, laneCones(rows, 18), &contacts->m_near);
-    settleLanes(contacts, found, pair.m_parallel | lanesOfEdgesMayMeet(&pair), pair.m_bounds, rows, 18);
+    decideLanes(contacts, found, pair.m_parallel | lanesOfEdgesMayMeet(&pair), pair.m_bounds, rows, 18);
 }
 
 DRAPE_NAMESPACE_END

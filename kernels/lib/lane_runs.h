@@ -6,7 +6,7 @@
 #include "item_runs.h"
 #include "lane_contacts.h"
 #include "list_contacts.h"
-#include "team.h"
+#include "simd_group.h"
 
 // Maximum kinds of tests, and maximum rows of numbers of one test.
 #define DRAPE_LANE_KINDS 3

@@ -38,7 +38,7 @@ DRAPE_FUNCTION void laneSelfNodeFace(LaneContacts* contacts, const float* rows, 
     const LanesMovingFace face = movingFace(start + 1, end + 1, start[0], end[0], own * reachScale, mode, 0);
     const LanesNearest nearest = nearestOfFace(&face);
     const LaneMask found = (own > 0.0f) & selfNodeNear(&face, &nearest, &contacts->m_near);
-    settleLanes(contacts, found, thin | face.m_areaEnd.m_thin | lanesMayMeet(&face, &nearest), face.m_bounds, rows,
+    decideLanes(contacts, found, thin | face.m_areaEnd.m_thin | lanesMayMeet(&face, &nearest), face.m_bounds, rows,
                 DRAPE_SELF_ROWS - 1);
 }
 
@@ -52,7 +52,7 @@ DRAPE_FUNCTION void laneSelfEdgeEdge(LaneContacts* contacts, const float* rows, 
     const Lanes own = selfThickness(lanesLoad(rows, DRAPE_SELF_ROWS - 1), distanceOfEdges(edgesFrom(rest)));
     const LanesEdgePair pair = edgePair(start, end, own * reachScale, mode, 0);
     const LaneMask found = (own > 0.0f) & selfEdgesNear(&pair, &contacts->m_near);
-    settleLanes(contacts, found, lanesOfEdgesMayMeet(&pair), pair.m_bounds, rows, DRAPE_SELF_ROWS - 1);
+    decideLanes(contacts, found, lanesOfEdgesMayMeet(&pair), pair.m_bounds, rows, DRAPE_SELF_ROWS - 1);
 }
 
 DRAPE_NAMESPACE_END

@@ -17,12 +17,12 @@ DRAPE_NAMESPACE_BEGIN
 // motion, 2e-4 of a feature; a root of any of these errs by a twentieth of the slack.
 #define DRAPE_ROOT_ERROR 1e-5f
 
-// A team's shared data (see team.h) lies in local memory if its lanes are a group's work-items: private memory would
-// store it once per lane.
+// A group's shared data (see simd_group.h) lies in local memory if its lanes are a group's work-items: private memory
+// would store it once per lane.
 #if defined(__OPENCL_VERSION__) && DRAPE_LANES == 1
-#define DRAPE_TEAM __local
+#define DRAPE_GROUP_MEMORY __local
 #else
-#define DRAPE_TEAM
+#define DRAPE_GROUP_MEMORY
 #endif
 
 #ifdef DRAPE_CPU_KERNELS

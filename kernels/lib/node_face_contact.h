@@ -5,7 +5,7 @@
 
 #include "feature_contact.h"
 #include "cloth_reads.h"
-#include "ways.h"
+#include "paths.h"
 
 DRAPE_NAMESPACE_BEGIN
 
@@ -57,10 +57,10 @@ DRAPE_FUNCTION int wentThrough(const NodeFace* pair, Vec3 hit, float distance)
     if (distance > seam &&
         !(distance <= DRAPE_SLIDE * bounds.m_extent && isWithinEdges(hit, &face, pair->m_area.m_vector, seam)))
         return 0;
-    if (distance <= DRAPE_WAY_REACH * bounds.m_reach) return 1;
+    if (distance <= DRAPE_PATH_REACH * bounds.m_reach) return 1;
     const Vec3 start[4] = {pair->m_x0, face.m_p[0], face.m_p[1], face.m_p[2]};
     const Vec3 end[4] = {pair->m_x1, face.m_p[0], face.m_p[1], face.m_p[2]};
-    return waysOverlap(start, end, 1, DRAPE_WAY_REACH * bounds.m_reach);
+    return pathsOverlap(start, end, 1, DRAPE_PATH_REACH * bounds.m_reach);
 }
 
 // Stores the contact of a node near to a face, unless the node leans away from the face's edge or corner nearest to it.

@@ -34,8 +34,8 @@ DRAPE_FUNCTION void nameFeatures(Contact* contact, const ClothView* view, DRAPE_
     contact->m_kind = kind;
     contact->m_clothFeature = cloth;
     contact->m_obstacleFeature = obstacle;
-    contact->m_slot = cloth + (kind == DRAPE_NODE_FACE ? 0u : view->m_nodeCount) +
-                      (kind == DRAPE_EDGE_EDGE ? view->m_triangleCount : 0u);
+    contact->m_featureIndex = cloth + (kind == DRAPE_NODE_FACE ? 0u : view->m_nodeCount) +
+                              (kind == DRAPE_EDGE_EDGE ? view->m_triangleCount : 0u);
 }
 
 // Tests node i of the cloth triangle against the obstacle's triangle with corners a, b, c.
@@ -116,15 +116,15 @@ DRAPE_FUNCTION int pairContact(int test, const ClothView* cloth, const ObstacleV
                             vec3Load(obstacle->m_positions, triangle->m_vertices[2]), obstacle, candidate.m_obstacle,
                             reach, contact);
     }
-    const int place = test < 6 ? test - 3 : (test - 6) % 3;
-    const DRAPE_UINT vertex = triangle->m_vertices[place];
+    const int corner = test < 6 ? test - 3 : (test - 6) % 3;
+    const DRAPE_UINT vertex = triangle->m_vertices[corner];
     const Vec3 a = vec3Load(obstacle->m_positions, vertex);
     if (test < 6)
     {
         return pairFaceVertex(cloth, candidate.m_cloth, a, obstacle->m_vertexCones[vertex], vertex, reach, contact);
     }
-    const Vec3 b = vec3Load(obstacle->m_positions, triangle->m_vertices[place == 2 ? 0 : place + 1]);
-    const DRAPE_UINT edge = triangle->m_edges[place];
+    const Vec3 b = vec3Load(obstacle->m_positions, triangle->m_vertices[corner == 2 ? 0 : corner + 1]);
+    const DRAPE_UINT edge = triangle->m_edges[corner];
     return pairEdgeEdge((test - 6) / 3, cloth, candidate.m_cloth, a, b, obstacle->m_edgeCones[edge], edge, reach,
                         contact);
 }

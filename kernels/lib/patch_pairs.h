@@ -1,12 +1,12 @@
 // Pairs of a cloth triangle and a patch of the obstacles: selects a step's pairs, the data for testing a patch, and
-// the list of remaining feature tests. For kernels only; see team.h for the team that runs them.
+// the list of remaining feature tests. For kernels only; see simd_group.h for the group that runs them.
 #ifndef DRAPE_LIB_PATCH_PAIRS_H
 #define DRAPE_LIB_PATCH_PAIRS_H
 
 #include "feature_cull.h"
 #include "rigid_motion.h"
 #include "step_views.h"
-#include "team.h"
+#include "simd_group.h"
 #include "wide_walk.h"
 
 // motion: 0 for none, else 1 + its index.
@@ -54,29 +54,29 @@ static void countInvalid(const StepCloths* cloths, const uint cloth, __global St
 }
 
 // A cloth triangle relative to one obstacle, for tests against that obstacle's features.
-typedef struct Looker
+typedef struct CullQuery
 {
     CullTriangle m_cull;
     uint m_valid, m_owned;  // its features, bits as in Triangle::m_owned
-} Looker;
+} CullQuery;
 
-static void look(Looker* looker, const StepCloths* cloths, const uint cloth, const uint motion)
+static void makeQuery(CullQuery* query, const StepCloths* cloths, const uint cloth, const uint motion)
 {
     const ClothView* view = &cloths->m_cloth;
-    looker->m_valid = prepareCull(&looker->m_cull, view->m_start, view->m_end, view->m_triangles + cloth, view->m_mode,
-                                  motionOf(cloths, motion));
-    looker->m_owned = view->m_triangles[cloth].m_owned;
+    query->m_valid = prepareCull(&query->m_cull, view->m_start, view->m_end, view->m_triangles + cloth, view->m_mode,
+                                 motionOf(cloths, motion));
+    query->m_owned = view->m_triangles[cloth].m_owned;
 }
 
 // Lists the tests of a block's lanes in the mask. kind: DRAPE_TEST_NODE …; first: the block's first lane.
-static void keepLanes(DRAPE_TEAM Team* team, const LaneMask mask, FeatureTest test, const uint kind, const uint first,
-                      const TestList* list)
+static void keepLanes(DRAPE_GROUP_MEMORY SimdGroup* group, const LaneMask mask, FeatureTest test, const uint kind,
+                      const uint first, const TestList* list)
 {
     test.m_cloth |= kind << DRAPE_TEST_SHIFT;
     forLanes(lane, mask)
     {
         test.m_lane = first + lane;
-        teamKeep(team, list, test);
+        simdKeep(group, list, test);
     }
 }
 

@@ -45,8 +45,8 @@ DRAPE_FUNCTION SelfView selfView(ClothView cloth, const DRAPE_GLOBAL float* rest
     return view;
 }
 
-// Slots of self contacts follow all slots of the cloths' contacts with obstacles.
-DRAPE_FUNCTION DRAPE_UINT firstSelfSlot(DRAPE_UINT nodes, DRAPE_UINT triangles, DRAPE_UINT edges)
+// Returns the first feature index of self contacts. They follow the indices of contacts with obstacles.
+DRAPE_FUNCTION DRAPE_UINT firstSelfFeature(DRAPE_UINT nodes, DRAPE_UINT triangles, DRAPE_UINT edges)
 {
     return nodes + triangles + edges;
 }
@@ -170,21 +170,22 @@ DRAPE_FUNCTION int selfEdgeEdge(const SelfView* view, DRAPE_UINT first, DRAPE_UI
     return finishContact(found, end[2], contact);
 }
 
-// Sets the features of a self test's contact. firstSlot: firstSelfSlot().
-DRAPE_FUNCTION void nameSelfFeatures(Contact* contact, const ClothView* cloth, FeatureTest test, DRAPE_UINT firstSlot)
+// Sets the features of a self test's contact. firstFeature: firstSelfFeature().
+DRAPE_FUNCTION void nameSelfFeatures(Contact* contact, const ClothView* cloth, FeatureTest test,
+                                     DRAPE_UINT firstFeature)
 {
     const int edges = test.m_motion == DRAPE_SELF_TEST_EDGE;
     contact->m_kind = edges ? DRAPE_SELF_EDGE_EDGE : DRAPE_SELF_NODE_FACE;
     contact->m_clothFeature = test.m_cloth;
     contact->m_obstacleFeature = test.m_lane;
-    contact->m_slot = firstSlot + test.m_cloth + (edges ? cloth->m_nodeCount + cloth->m_triangleCount : 0u);
+    contact->m_featureIndex = firstFeature + test.m_cloth + (edges ? cloth->m_nodeCount + cloth->m_triangleCount : 0u);
 }
 
 // Runs a self test. Returns DRAPE_NO_CONTACT, ….
-DRAPE_FUNCTION int selfContact(const SelfView* view, FeatureTest test, DRAPE_UINT firstSlot, Contact* contact)
+DRAPE_FUNCTION int selfContact(const SelfView* view, FeatureTest test, DRAPE_UINT firstFeature, Contact* contact)
 {
     const int edges = test.m_motion == DRAPE_SELF_TEST_EDGE;
-    nameSelfFeatures(contact, &view->m_cloth, test, firstSlot);
+    nameSelfFeatures(contact, &view->m_cloth, test, firstFeature);
     return edges ? selfEdgeEdge(view, test.m_cloth, test.m_lane, test.m_reach, contact)
                  : selfNodeFace(view, test.m_cloth, test.m_lane, test.m_reach, contact);
 }

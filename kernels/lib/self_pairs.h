@@ -6,7 +6,7 @@
 #include "cull_packet.h"
 #include "self_contact.h"
 #include "self_cull.h"
-#include "team.h"
+#include "simd_group.h"
 
 // A cloth over the step. start: the end's positions in a discrete step.
 typedef struct SelfCloth
@@ -63,8 +63,8 @@ static int volumesOverlap(const Vec3 from[4], const Vec3 to[4], const int split,
 
 // Lists a pair of features that share no node, and whose boxes overlap, if their volumes do. kind: DRAPE_SELF_TEST_NODE
 // …; a, b: node and face, or edges.
-static void keepPair(DRAPE_TEAM Team* team, const SelfCloth* cloth, const uint a, const uint b, const uint kind,
-                     const TestList* list)
+static void keepPair(DRAPE_GROUP_MEMORY SimdGroup* group, const SelfCloth* cloth, const uint a, const uint b,
+                     const uint kind, const TestList* list)
 {
     const int edges = kind == DRAPE_SELF_TEST_EDGE;
     uint nodes[4];
@@ -94,7 +94,7 @@ static void keepPair(DRAPE_TEAM Team* team, const SelfCloth* cloth, const uint a
     test.m_lane = b;
     test.m_reach = cloth->m_thickness;
     test.m_motion = kind;
-    teamKeep(team, list, test);
+    simdKeep(group, list, test);
 }
 
 #endif

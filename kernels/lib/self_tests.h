@@ -6,11 +6,11 @@
 #include "self_views.h"
 
 // Tests the item-th pair. Lists its contact, or the test in `swept` if only the continuous test can decide.
-static void testSelf(__global const FeatureTest* tests, const uint item, const SelfView* view, const uint firstSlot,
+static void testSelf(__global const FeatureTest* tests, const uint item, const SelfView* view, const uint firstFeature,
                      const ContactSink* sink, __global uint* swept, __global StepCounters* counters)
 {
     Contact contact;
-    const int found = selfContact(view, tests[item], firstSlot, &contact);
+    const int found = selfContact(view, tests[item], firstFeature, &contact);
     if (found == DRAPE_IS_CONTACT)
         listContact(sink, &contact);
     else if (found == DRAPE_UNDECIDED)

@@ -12,7 +12,7 @@ typedef struct SelfPatches
 {
     const DRAPE_GLOBAL Patch* m_patches;
     DRAPE_UINT m_patchCount;
-    DRAPE_UINT m_places;  // positions in the wide tree's lowest level
+    DRAPE_UINT m_entries;  // positions in the wide tree's lowest level
     const DRAPE_GLOBAL DRAPE_UINT* m_faceIds;
     const DRAPE_GLOBAL DRAPE_UINT* m_vertexIds;
     const DRAPE_GLOBAL DRAPE_UINT* m_edgeIds;
@@ -41,7 +41,7 @@ typedef struct SelfInput
     const DRAPE_GLOBAL FeatureTest* m_tests;
     DRAPE_UINT m_count;
     SelfView m_view;
-    DRAPE_UINT m_firstSlot;  // firstSelfSlot()
+    DRAPE_UINT m_firstFeature;  // firstSelfFeature()
 } SelfInput;
 
 // Returns the positions at which volumes over the step begin: those of the end in a discrete step.

@@ -103,12 +103,12 @@ typedef struct TestList
 // A step's list of unsorted contacts; ordering sorts it into canonical order. m_found counts on when the list is full.
 // All numbers must be zero before the step's first kernel that lists contacts. Where features are few on a GPU the
 // sums of the numbers are kept, too, and for each contact the number of its feature's contacts before it; elsewhere
-// m_places and m_sums are null.
+// m_ranks and m_sums are null.
 typedef struct ContactSink
 {
     DRAPE_GLOBAL Contact* m_contacts;
     DRAPE_UINT m_capacity;
-    DRAPE_GLOBAL DRAPE_UINT* m_places;
+    DRAPE_GLOBAL DRAPE_UINT* m_ranks;
     volatile DRAPE_GLOBAL DRAPE_UINT* m_featureCounts;  // contacts listed of each cloth feature
     volatile DRAPE_GLOBAL DRAPE_UINT* m_sums;           // DRAPE_FEATURE_SUMS
     volatile DRAPE_GLOBAL DRAPE_UINT* m_found;

@@ -16,13 +16,13 @@ static uint testByKind(__global const FeatureTest* tests, const uint first, cons
     if (lane < DRAPE_TEST_KINDS) kinds[lane] = 0;
     barrier(CLK_LOCAL_MEM_FENCE);
     const uint kind = item < count ? kindOfTest(tests[item]) : DRAPE_TEST_KINDS;
-    uint place = item < count ? atomic_inc(kinds + kind) : 0;
+    uint index = item < count ? atomic_inc(kinds + kind) : 0;
     barrier(CLK_LOCAL_MEM_FENCE);
     if (item < count)
     {
         for (uint k = 0; k < kind; ++k)
-            place += kinds[k];
-        order[place] = (ushort)lane;
+            index += kinds[k];
+        order[index] = (ushort)lane;
     }
     barrier(CLK_LOCAL_MEM_FENCE);
     return item < count ? first + order[lane] : count;
@@ -102,7 +102,7 @@ __kernel __attribute__((reqd_work_group_size(DRAPE_FEATURE_GROUP, 1, 1))) void n
     ClothView cloth = clothAt(nodes, cloths, &values.m_cloth, values.m_mode, 0);
     const FeatureInput input = featureInput(&values, tests, count, cloth, obstacles, patches, motions);
     const ContactSink sink =
-        contactSink(contacts, values.m_contactCapacity, places, featureCounts, values.m_sums, counters);
+        contactSink(contacts, values.m_contactCapacity, ranks, featureCounts, values.m_sums, counters);
     for (uint first = get_group_id(0) * get_local_size(0); first < count; first += get_global_size(0))
     {
         const uint item = testByKind(tests, first, count, kinds, order);
@@ -120,7 +120,7 @@ __kernel void narrowPhaseSwept(DRAPE_NARROW_PHASE_SWEPT)
         featureInput(&values, tests, 0, clothAt(nodes, cloths, &values.m_cloth, values.m_mode, &searches), obstacles,
                      patches, motions);
     const ContactSink sink =
-        contactSink(contacts, values.m_contactCapacity, places, featureCounts, values.m_sums, counters);
+        contactSink(contacts, values.m_contactCapacity, ranks, featureCounts, values.m_sums, counters);
     runSweptTests(&input, &sink, swept, values.m_most, counters);
 }
 
@@ -133,7 +133,7 @@ __kernel void narrowPhaseSmall(DRAPE_NARROW_PHASE_SMALL)
     ClothView cloth = clothAt(nodes, cloths, &values.m_cloth, values.m_mode, &searches);
     const FeatureInput input = featureInput(&values, tests, count, cloth, obstacles, patches, motions);
     const ContactSink sink =
-        contactSink(contacts, values.m_contactCapacity, places, featureCounts, values.m_sums, counters);
+        contactSink(contacts, values.m_contactCapacity, ranks, featureCounts, values.m_sums, counters);
     const KindShare share = kindShare(0);
     for (uint i = share.m_first; i < count; i += share.m_stride)
     {

@@ -1,7 +1,7 @@
 // Arguments of the narrow phase's kernels (shared/bindings.h).
 //
 // tests: listed by the cull; nodes, cloths, obstacles, patches: see shared/arenas.h; motions: of the obstacles that
-// move in the step. contacts, places, featureCounts: see ContactSink. swept: tests that the continuous test decides.
+// move in the step. contacts, ranks, featureCounts: see ContactSink. swept: tests that the continuous test decides.
 #ifndef DRAPE_NARROW_PHASE_BINDINGS_H
 #define DRAPE_NARROW_PHASE_BINDINGS_H
 
@@ -27,10 +27,10 @@ typedef struct FeatureValues
 
 DRAPE_NAMESPACE_END
 
-#define DRAPE_NARROW_PHASE_SMALL                                                                                 \
-    DRAPE_VALUE(FeatureValues, values), DRAPE_READS(FeatureTest, tests), DRAPE_READS(float, nodes),              \
-        DRAPE_READS(ClothWord, cloths), DRAPE_READS(ObstacleWord, obstacles), DRAPE_READS(PatchWord, patches),   \
-        DRAPE_READS(ObstacleMotion, motions), DRAPE_WRITES(Contact, contacts), DRAPE_WRITES(DRAPE_UINT, places), \
+#define DRAPE_NARROW_PHASE_SMALL                                                                                \
+    DRAPE_VALUE(FeatureValues, values), DRAPE_READS(FeatureTest, tests), DRAPE_READS(float, nodes),             \
+        DRAPE_READS(ClothWord, cloths), DRAPE_READS(ObstacleWord, obstacles), DRAPE_READS(PatchWord, patches),  \
+        DRAPE_READS(ObstacleMotion, motions), DRAPE_WRITES(Contact, contacts), DRAPE_WRITES(DRAPE_UINT, ranks), \
         DRAPE_UPDATES(DRAPE_UINT, featureCounts), DRAPE_UPDATES(StepCounters, counters)
 #define DRAPE_NARROW_PHASE_FEATURE DRAPE_NARROW_PHASE_SMALL, DRAPE_WRITES(DRAPE_UINT, swept)
 #define DRAPE_NARROW_PHASE_SWEPT DRAPE_NARROW_PHASE_SMALL, DRAPE_READS(DRAPE_UINT, swept)

@@ -115,7 +115,7 @@ static int takeContact(const NearContact* near, const float* rows, const uint la
     return finishContact(found, origin, contact);
 }
 
-static void askForLane(__global const float* blocks, const uint floats, __global const uint* ids, const uint lane)
+static void prefetchLane(__global const float* blocks, const uint floats, __global const uint* ids, const uint lane)
 {
     __global const float* block = blocks + lane / DRAPE_PATCH_WIDTH * floats * DRAPE_PATCH_WIDTH;
     for (uint row = 0; row < floats; ++row)
@@ -124,21 +124,21 @@ static void askForLane(__global const float* blocks, const uint floats, __global
 }
 
 // Prefetches a test's data.
-static void askForTest(const LaneWork* work, const FeatureTest feature)
+static void prefetchTest(const LaneWork* work, const FeatureTest feature)
 {
     const PackedPatches* packed = &work->m_packed;
     const uint test = feature.m_cloth >> DRAPE_TEST_SHIFT, lane = feature.m_lane;
     prefetchWord(work->m_cloth.m_triangles + (feature.m_cloth & ((1u << DRAPE_TEST_SHIFT) - 1u)));
     if (test < DRAPE_TEST_FACE)
-        askForLane(packed->m_faces, DRAPE_FACE_FLOATS, packed->m_faceIds, lane);
+        prefetchLane(packed->m_faces, DRAPE_FACE_FLOATS, packed->m_faceIds, lane);
     else if (test == DRAPE_TEST_FACE)
-        askForLane(packed->m_vertices, DRAPE_VERTEX_FLOATS, packed->m_vertexIds, lane);
+        prefetchLane(packed->m_vertices, DRAPE_VERTEX_FLOATS, packed->m_vertexIds, lane);
     else
-        askForLane(packed->m_edges, DRAPE_EDGE_FLOATS, packed->m_edgeIds, lane);
+        prefetchLane(packed->m_edges, DRAPE_EDGE_FLOATS, packed->m_edgeIds, lane);
 }
 
-// Prefetches, once askForTest() has loaded the test's data, the data that it refers to.
-static void askForNodes(const LaneWork* work, const FeatureTest feature)
+// Prefetches, once prefetchTest() has loaded the test's data, the data that it refers to.
+static void prefetchNodes(const LaneWork* work, const FeatureTest feature)
 {
     const ClothView* cloth = &work->m_cloth;
     const uint test = feature.m_cloth >> DRAPE_TEST_SHIFT;
@@ -152,12 +152,12 @@ static void askForNodes(const LaneWork* work, const FeatureTest feature)
     if (test < DRAPE_TEST_FACE) prefetchWord(work->m_obstacle.m_triangles + work->m_packed.m_faceIds[feature.m_lane]);
 }
 
-static void askForRun(const LaneWork* work, const uint first, const uint end)
+static void prefetchRun(const LaneWork* work, const uint first, const uint end)
 {
     for (uint item = first; item < end; ++item)
-        askForTest(work, work->m_tests[item]);
+        prefetchTest(work, work->m_tests[item]);
     for (uint item = first; item < end; ++item)
-        askForNodes(work, work->m_tests[item]);
+        prefetchNodes(work, work->m_tests[item]);
 }
 
 // Number of tests from which their data is seldom in the caches.
@@ -173,7 +173,7 @@ static void runFeatureTests(const FeatureInput* input, const ContactSink* sink, 
     const uint count = input->m_count;
     for (ItemRuns runs = itemRuns(count, 1); runs.m_item < count; nextRun(&runs))
     {
-        if (count >= DRAPE_FAR_TESTS) askForRun(&work, runs.m_item, runs.m_end);
+        if (count >= DRAPE_FAR_TESTS) prefetchRun(&work, runs.m_item, runs.m_end);
         testRun(&work, runs.m_item, runs.m_end, work.m_cloth.m_mode, sink);
     }
 }
@@ -192,7 +192,7 @@ __kernel void narrowPhaseFeature(DRAPE_NARROW_PHASE_FEATURE)
                                 patchesAt(patches, &values.m_patches),
                                 motions};
     const ContactSink sink =
-        contactSink(contacts, values.m_contactCapacity, places, featureCounts, values.m_sums, counters);
+        contactSink(contacts, values.m_contactCapacity, ranks, featureCounts, values.m_sums, counters);
     runFeatureTests(&input, &sink, swept, counters);
 }
 #endif

@@ -32,21 +32,21 @@ __kernel void orderingCount(DRAPE_ORDERING_COUNT)
     if (get_local_id(0) == 0) blockCounts[get_group_id(0)] = total;
 }
 
-// Writes where the contacts of each feature of the group's block begin, the first at `place`, and counts the features
+// Writes where the contacts of each feature of the group's block begin, the first at `index`, and counts the features
 // that have more than `ranked`. Returns where the contacts after the block begin.
 static uint placeBlock(__global const uint* restrict featureCounts, const uint features, const uint ranked,
-                       const uint place, __global uint* restrict firsts, __global StepCounters* restrict counters,
+                       const uint index, __global uint* restrict firsts, __global StepCounters* restrict counters,
                        __local uint* scratch)
 {
     uint first, last, total;
-    uint next = place + groupPrefix(scratch, countShare(featureCounts, features, &first, &last), &total);
+    uint next = index + groupPrefix(scratch, countShare(featureCounts, features, &first, &last), &total);
     for (uint feature = first; feature < last; ++feature)
     {
         firsts[feature] = next;
         next += featureCounts[feature];
         if (featureCounts[feature] > ranked) atomic_inc(&counters->m_crowded);
     }
-    return place + total;
+    return index + total;
 }
 
 // Processes a block of features per work-group, and sums the contacts of all earlier features. The last group stores
@@ -70,10 +70,10 @@ __kernel void orderingGather(DRAPE_ORDERING_GATHER)
     for (ItemRuns runs = itemRuns(count, 1); runs.m_item < count; nextItem(&runs))
     {
         const uint i = runs.m_item;
-        const uint feature = unsorted[i].m_slot;
-        const uint place = firsts[feature] + atomic_dec(featureCounts + feature) - 1;
-        members[place] = i;
-        keys[place] = unsorted[i].m_obstacleFeature;
+        const uint feature = unsorted[i].m_featureIndex;
+        const uint index = firsts[feature] + atomic_dec(featureCounts + feature) - 1;
+        members[index] = i;
+        keys[index] = unsorted[i].m_obstacleFeature;
     }
 }
 
@@ -120,7 +120,7 @@ __kernel void orderingWrite(DRAPE_ORDERING_WRITE)
         const uint i = runs.m_item;
         prefetchWord(unsorted + members[min(i + DRAPE_AHEAD, count - 1)]);
         __global const Contact* contact = unsorted + members[i];
-        const uint feature = contact->m_slot, first = firsts[feature];
+        const uint feature = contact->m_featureIndex, first = firsts[feature];
         const uint last = feature + 1 < features ? min(firsts[feature + 1], count) : count;
         const int sorted = last - first > values.m_ranked;
         const uint key = keys[i];

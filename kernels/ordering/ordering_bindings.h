@@ -1,6 +1,6 @@
 // Arguments of the ordering's kernels (shared/bindings.h). Features are the cloths'.
 //
-// unsorted, places, featureCounts: see ContactSink. firsts: first position of each feature's contacts in canonical
+// unsorted, ranks, featureCounts: see ContactSink. firsts: first position of each feature's contacts in canonical
 // order. members, keys: see orderingGather. counters, next: of this step and of the next one.
 #ifndef DRAPE_ORDERING_BINDINGS_H
 #define DRAPE_ORDERING_BINDINGS_H
@@ -34,7 +34,7 @@ DRAPE_NAMESPACE_END
         DRAPE_READS(DRAPE_UINT, firsts), DRAPE_WRITES(DRAPE_UINT, members), DRAPE_WRITES(DRAPE_UINT, keys),        \
         DRAPE_READS(StepCounters, counters), DRAPE_WRITES(StepCounters, next)
 #define DRAPE_ORDERING_GATHER_SMALL                                                                                  \
-    DRAPE_VALUE(OrderingValues, values), DRAPE_READS(Contact, unsorted), DRAPE_READS(DRAPE_UINT, places),            \
+    DRAPE_VALUE(OrderingValues, values), DRAPE_READS(Contact, unsorted), DRAPE_READS(DRAPE_UINT, ranks),             \
         DRAPE_READS(DRAPE_UINT, featureCounts), DRAPE_WRITES(DRAPE_UINT, firsts), DRAPE_WRITES(DRAPE_UINT, members), \
         DRAPE_WRITES(DRAPE_UINT, keys), DRAPE_UPDATES(StepCounters, counters), DRAPE_WRITES(StepCounters, next)
 #define DRAPE_ORDERING_SORT                                                                                   \

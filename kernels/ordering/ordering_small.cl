@@ -12,7 +12,7 @@ static void placeFeature(__global const uint* featureCounts, __global const uint
     if (featureCounts[feature] > ranked) atomic_inc(&counters->m_crowded);
 }
 
-// Processes features, and contacts, which a work-item lists among their features' members. places, featureCounts: see
+// Processes features, and contacts, which a work-item lists among their features' members. ranks, featureCounts: see
 // ContactSink. firsts: first position of each feature's members. keys, members: see orderingGather. Leaves the next
 // step's counters zero.
 __kernel void orderingGatherSmall(DRAPE_ORDERING_GATHER_SMALL)
@@ -29,9 +29,9 @@ __kernel void orderingGatherSmall(DRAPE_ORDERING_GATHER_SMALL)
     // Starts with the work-items that have processed one feature less.
     for (uint i = (id + size - features % size) % size; i < count; i += size)
     {
-        const uint feature = unsorted[i].m_slot;
-        const uint place = contactsBefore(featureCounts, sums, wide, feature) + places[i];
-        members[place] = i;
-        keys[place] = unsorted[i].m_obstacleFeature;
+        const uint feature = unsorted[i].m_featureIndex;
+        const uint index = contactsBefore(featureCounts, sums, wide, feature) + ranks[i];
+        members[index] = i;
+        keys[index] = unsorted[i].m_obstacleFeature;
     }
 }

@@ -41,7 +41,7 @@ __kernel void queryPairs(DRAPE_QUERY_PAIRS)
         const PairAnswer answer =
             trianglePairAnswer(pairs[i], positionsA, trianglesA, positionsB, trianglesB, values.m_radius);
         if (answer.m_bits == 0u) continue;
-        const uint place = atomic_inc(demand);
-        if (place < values.m_capacity) answers[place] = answer;
+        const uint index = atomic_inc(demand);
+        if (index < values.m_capacity) answers[index] = answer;
     }
 }

@@ -10,21 +10,21 @@
 
 // Reserves room for count entries of a list. Returns false if the demand has reached `enough`, beyond which nothing is
 // counted.
-static int reserveEntries(__global volatile uint* demand, const uint count, const uint enough, uint* place)
+static int reserveEntries(__global volatile uint* demand, const uint count, const uint enough, uint* index)
 {
     if (*demand >= enough) return 0;
-    *place = atomic_add(demand, count);
+    *index = atomic_add(demand, count);
     return 1;
 }
 
 static int flushPairs(__global Candidate* restrict pairs, const uint capacity, const uint enough,
                       __global SelfCounters* restrict counters, const Candidate* gathered, const uint count)
 {
-    uint place;
-    if (!reserveEntries(&counters->m_pairs, count, enough, &place)) return 0;
+    uint index;
+    if (!reserveEntries(&counters->m_pairs, count, enough, &index)) return 0;
     for (uint i = 0; i < count; ++i)
     {
-        if (place + i < capacity) pairs[place + i] = gathered[i];
+        if (index + i < capacity) pairs[index + i] = gathered[i];
     }
     return 1;
 }
@@ -72,11 +72,11 @@ __kernel void leafTraverse(DRAPE_LEAF_TRAVERSE)
 static void storePairs(__global FeaturePair* restrict list, const uint capacity, __global volatile uint* demand,
                        const FeaturePair* pairs, const uint count)
 {
-    uint place;
-    if (count == 0 || !reserveEntries(demand, count, DRAPE_DEMAND_LIMIT, &place)) return;
+    uint index;
+    if (count == 0 || !reserveEntries(demand, count, DRAPE_DEMAND_LIMIT, &index)) return;
     for (uint i = 0; i < count; ++i)
     {
-        if (place + i < capacity) list[place + i] = pairs[i];
+        if (index + i < capacity) list[index + i] = pairs[i];
     }
 }
 
@@ -105,7 +105,7 @@ __kernel void selfTest(DRAPE_SELF_TEST)
         const uint i = runs.m_item;
         FeatureHit hit;
         if (!featurePairHit(values.m_kind, pairs[i], triangles, edges, start, end, values.m_settings, &hit)) continue;
-        const uint place = atomic_inc(&counters->m_hits);
-        if (place < values.m_hitCapacity) hits[place] = hit;
+        const uint index = atomic_inc(&counters->m_hits);
+        if (index < values.m_hitCapacity) hits[index] = hit;
     }
 }

@@ -61,9 +61,9 @@ static void packVertex(const ObstacleView* obstacle, __global const uint* owners
 {
     __global float* out =
         vertices + (i / DRAPE_PATCH_WIDTH) * DRAPE_VERTEX_FLOATS * DRAPE_PATCH_WIDTH + i % DRAPE_PATCH_WIDTH;
-    const uint owner = owners[i] & ((1u << DRAPE_PLACE_SHIFT) - 1u), place = owners[i] >> DRAPE_PLACE_SHIFT;
+    const uint owner = owners[i] & ((1u << DRAPE_CORNER_SHIFT) - 1u), corner = owners[i] >> DRAPE_CORNER_SHIFT;
     const int used = owners[i] != DRAPE_NO_FEATURE;
-    const uint vertex = used ? obstacle->m_triangles[owner].m_vertices[place] : 0;
+    const uint vertex = used ? obstacle->m_triangles[owner].m_vertices[corner] : 0;
     const NormalCone cone = obstacle->m_vertexCones[vertex];
     ids[i] = vertex;
     packVec3(out, 0, packedPosition(obstacle->m_positions, vertex, used));
@@ -78,13 +78,13 @@ static void packEdge(const ObstacleView* obstacle, __global const uint* owners, 
     __global float* out =
         edges + (i / DRAPE_PATCH_WIDTH) * DRAPE_EDGE_FLOATS * DRAPE_PATCH_WIDTH + i % DRAPE_PATCH_WIDTH;
     const int used = owners[i] != DRAPE_NO_FEATURE;
-    const uint owner = used ? owners[i] & ((1u << DRAPE_PLACE_SHIFT) - 1u) : 0;
-    const uint place = used ? owners[i] >> DRAPE_PLACE_SHIFT : 0;
+    const uint owner = used ? owners[i] & ((1u << DRAPE_CORNER_SHIFT) - 1u) : 0;
+    const uint corner = used ? owners[i] >> DRAPE_CORNER_SHIFT : 0;
     __global const Triangle* triangle = obstacle->m_triangles + owner;
-    const uint edge = triangle->m_edges[place], next = place == 2 ? 0 : place + 1;
+    const uint edge = triangle->m_edges[corner], next = corner == 2 ? 0 : corner + 1;
     const NormalCone cone = obstacle->m_edgeCones[edge];
     ids[i] = edge;
-    packVec3(out, 0, packedPosition(obstacle->m_positions, triangle->m_vertices[place], used));
+    packVec3(out, 0, packedPosition(obstacle->m_positions, triangle->m_vertices[corner], used));
     packVec3(out, 3, packedPosition(obstacle->m_positions, triangle->m_vertices[next], used));
     packVec3(out, 6, cone.m_axis);
     out[9 * DRAPE_PATCH_WIDTH] = cone.m_cosine;

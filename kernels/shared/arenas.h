@@ -66,7 +66,7 @@ typedef struct SelfPatchLayout
 {
     DRAPE_UINT m_patches;  // Patch
     DRAPE_UINT m_patchCount;
-    DRAPE_UINT m_places;     // number of positions in the wide tree's lowest level
+    DRAPE_UINT m_entries;    // number of positions in the wide tree's lowest level
     DRAPE_UINT m_faceIds;    // uint
     DRAPE_UINT m_vertexIds;  // uint
     DRAPE_UINT m_edgeIds;    // uint

@@ -15,15 +15,15 @@ DRAPE_NAMESPACE_BEGIN
 #define DRAPE_SELF_NODE_FACE 3u
 #define DRAPE_SELF_EDGE_EDGE 4u
 
-// Maximum contacts of a slot that a CPU's work-item sorts alone in quadratic time. A cloth feature at rest has a
-// few dozen.
+// Maximum contacts of a cloth feature that a CPU's work-item sorts alone in quadratic time. A feature at rest
+// has a few dozen.
 #define DRAPE_RANKED 64u
 
-// Canonical order of contacts: slot, then obstacle feature. A slot is a cloth feature: first all nodes, then all faces,
-// then all edges; behind them, in the same order, the slots of contacts of cloths with themselves.
+// Canonical order of contacts: feature index, then obstacle feature. Feature indices count all nodes, then all faces,
+// then all edges of the cloths. Contacts of cloths with themselves have a second range behind these, in the same order.
 typedef struct Contact
 {
-    DRAPE_UINT m_slot;          // cloth feature of any kind, over all cloths
+    DRAPE_UINT m_featureIndex;  // cloth feature of any kind, over all cloths
     DRAPE_UINT m_kind;          // DRAPE_NODE_FACE, ...
     DRAPE_UINT m_clothFeature;  // node, triangle or edge, index over all cloths
     // Triangle, vertex or edge, an index over all obstacles; for self contacts over all cloths.

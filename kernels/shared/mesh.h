@@ -79,7 +79,7 @@ typedef struct StepCounters
 {
     DRAPE_UINT m_candidates;
     DRAPE_UINT m_contactsFound;   // counts on when the list is full
-    DRAPE_UINT m_crowded;         // slots with too many contacts for counting (ordering.cl, ordering_small.cl)
+    DRAPE_UINT m_crowded;         // features with too many contacts for counting (ordering.cl, ordering_small.cl)
     DRAPE_UINT m_contactsStored;  // contacts in the list
     DRAPE_UINT m_invalidNodes;
     DRAPE_UINT m_swept;       // pairs of features that the continuous test decided

@@ -40,7 +40,7 @@ typedef struct Patch
 
 // A lane's owner: a triangle that owns its feature in the low bits, the feature's index in that triangle above.
 // Unused lanes hold DRAPE_NO_FEATURE and NaN positions, which no test keeps.
-#define DRAPE_PLACE_SHIFT 30
+#define DRAPE_CORNER_SHIFT 30
 #define DRAPE_NO_FEATURE 0xffffffffu
 
 // Features that a face's triangle owns, in one word: its bits as in Triangle::m_owned, above them the lanes of its

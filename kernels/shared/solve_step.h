@@ -94,11 +94,11 @@ typedef struct SolveBatch
 } SolveBatch;
 
 // Where the contacts of a cloth feature belong.
-typedef struct SolveSlot
+typedef struct SolveFeature
 {
     DRAPE_UINT m_bucket;    // DRAPE_NO_BUCKET: in no cloth of the step
     DRAPE_UINT m_nodes[3];  // DRAPE_NO_NODE where unused
-} SolveSlot;
+} SolveFeature;
 #define DRAPE_NO_BUCKET 0xffffffffu
 #define DRAPE_NO_NODE 0xffffffffu
 
@@ -204,7 +204,7 @@ typedef struct SolveLayout
     DRAPE_UINT m_paths, m_accelerations, m_sorted, m_order, m_acting, m_spans, m_marks;
     // In the topology: the links; by node, the position of its faces, then the last one's end; the faces of the nodes;
     // three nodes for each face; by node, its place in the caller's order; by bucket, its cloth.
-    DRAPE_UINT m_links, m_linkBatches, m_groups, m_levelGroups, m_faceLists, m_facesOfNode, m_faces, m_places, m_slots,
+    DRAPE_UINT m_links, m_linkBatches, m_groups, m_levelGroups, m_faceLists, m_facesOfNode, m_faces, m_places, m_features,
         m_bucketCloths;
 } SolveLayout;
 

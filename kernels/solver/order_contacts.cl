@@ -20,9 +20,9 @@ static uint contactCount(__global const Contact* contacts)
 static uint runAt(__global const Contact* contacts, const uint index, const uint count)
 {
     __global const Contact* first = contacts + DRAPE_CONTACT_HEAD + index;
-    if (index > 0 && first[-1].m_slot == first->m_slot) return 0;
+    if (index > 0 && first[-1].m_featureIndex == first->m_featureIndex) return 0;
     uint run = 1;
-    while (index + run < count && first[run].m_slot == first->m_slot)
+    while (index + run < count && first[run].m_featureIndex == first->m_featureIndex)
         ++run;
     return run;
 }
@@ -41,14 +41,14 @@ __kernel void takePaths(DRAPE_ORDER_CONTACTS)
 
 __kernel void countContacts(DRAPE_ORDER_CONTACTS)
 {
-    __global const SolveSlot* slots = (__global const SolveSlot*)(topology + layout.m_slots);
+    __global const SolveFeature* features = (__global const SolveFeature*)(topology + layout.m_features);
     __global const uint* cloths = (__global const uint*)(topology + layout.m_bucketCloths);
     __global SolveBucket* buckets = (__global SolveBucket*)(work + layout.m_buckets);
     __global SolveProgress* progress = (__global SolveProgress*)(work + layout.m_progress);
     const uint count = contactCount(contacts);
     for (uint i = get_global_id(0); i < count; i += get_global_size(0))
     {
-        const uint bucket = slots[contacts[DRAPE_CONTACT_HEAD + i].m_slot].m_bucket;
+        const uint bucket = features[contacts[DRAPE_CONTACT_HEAD + i].m_featureIndex].m_bucket;
         const uint run = bucket == DRAPE_NO_BUCKET ? 0 : runAt(contacts, i, count);
         if (run == 0) continue;
         atomic_add(&buckets[bucket].m_count, run);
@@ -67,14 +67,14 @@ __kernel void placeBuckets(DRAPE_ORDER_CONTACTS)
 
 __kernel void gatherContacts(DRAPE_ORDER_CONTACTS)
 {
-    __global const SolveSlot* slots = (__global const SolveSlot*)(topology + layout.m_slots);
+    __global const SolveFeature* features = (__global const SolveFeature*)(topology + layout.m_features);
     __global SolveBucket* buckets = (__global SolveBucket*)(work + layout.m_buckets);
     __global SolveContact* sorted = (__global SolveContact*)(work + layout.m_sorted);
     __global uint* order = (__global uint*)(work + layout.m_order);
     const uint count = contactCount(contacts);
     for (uint i = get_global_id(0); i < count; i += get_global_size(0))
     {
-        const uint bucket = slots[contacts[DRAPE_CONTACT_HEAD + i].m_slot].m_bucket;
+        const uint bucket = features[contacts[DRAPE_CONTACT_HEAD + i].m_featureIndex].m_bucket;
         const uint run = bucket == DRAPE_NO_BUCKET ? 0 : runAt(contacts, i, count);
         if (run == 0) continue;
         const uint first = buckets[bucket].m_first + atomic_add(&buckets[bucket].m_filled, run);
@@ -89,7 +89,7 @@ __kernel void gatherContacts(DRAPE_ORDER_CONTACTS)
 // Sets the bounding planes, and marks the nodes with contacts.
 __kernel void prepareContacts(DRAPE_ORDER_CONTACTS)
 {
-    __global const SolveSlot* slots = (__global const SolveSlot*)(topology + layout.m_slots);
+    __global const SolveFeature* features = (__global const SolveFeature*)(topology + layout.m_features);
     __global const uint* cloths = (__global const uint*)(topology + layout.m_bucketCloths);
     __global SolveContact* sorted = (__global SolveContact*)(work + layout.m_sorted);
     __global const uint* order = (__global const uint*)(work + layout.m_order);
@@ -97,26 +97,26 @@ __kernel void prepareContacts(DRAPE_ORDER_CONTACTS)
     for (uint i = get_global_id(0); i < total; i += get_global_size(0))
     {
         __global const Contact* found = contacts + DRAPE_CONTACT_HEAD + order[i];
-        const SolveSlot slot = slots[found->m_slot];
+        const SolveFeature feature = features[found->m_featureIndex];
         __global const SolveCloth* cloth =
-            (__global const SolveCloth*)(input + layout.m_cloths) + cloths[slot.m_bucket];
+            (__global const SolveCloth*)(input + layout.m_cloths) + cloths[feature.m_bucket];
         __global const NodePath* paths = (__global const NodePath*)(work + layout.m_paths) + cloth->m_nodes.m_first;
         __global SolveAllowance* allowances =
             (__global SolveAllowance*)(work + layout.m_allowances) + cloth->m_nodes.m_first;
         SolveContact contact;
         contact.m_normal = vec3Load(found->m_normal, 0);
-        const Vec3 first = paths[slot.m_nodes[0]].m_start;
+        const Vec3 first = paths[feature.m_nodes[0]].m_start;
         Vec3 start = first;
         uint count = 0;
         for (uint k = 0; k < 3; ++k)
         {
-            const int isUsed = slot.m_nodes[k] != DRAPE_NO_NODE;
-            contact.m_nodes[k] = isUsed ? slot.m_nodes[k] : slot.m_nodes[0];
+            const int isUsed = feature.m_nodes[k] != DRAPE_NO_NODE;
+            contact.m_nodes[k] = isUsed ? feature.m_nodes[k] : feature.m_nodes[0];
             if (!isUsed) continue;
             ++count;
-            allowances[slot.m_nodes[k]].m_hasContact = 1;
+            allowances[feature.m_nodes[k]].m_hasContact = 1;
             if (k > 0)
-                start = vec3AddScaled(start, vec3Sub(paths[slot.m_nodes[k]].m_start, first), found->m_weights[k]);
+                start = vec3AddScaled(start, vec3Sub(paths[feature.m_nodes[k]].m_start, first), found->m_weights[k]);
         }
         const Vec3 apart = vec3Sub(vec3Load(found->m_point, 0), start);
         contact.m_level = cloth->m_mostThickness + vec3Dot(contact.m_normal, apart) + cloth->m_margin;

@@ -67,8 +67,8 @@ void DeviceTreeStep::upload()
     m_end.reserve(m_device, 3 * m_scene.m_cloths.vertexCount());
     m_thickness.assign(m_device, m_scene.m_thickness);
     uploadGeometry();
-    m_unsorted.resizeFeatures(m_device, m_scene.slotCount());
-    m_ordering.resizeFeatures(m_device, m_scene.slotCount());
+    m_unsorted.resizeFeatures(m_device, m_scene.featureCount());
+    m_ordering.resizeFeatures(m_device, m_scene.featureCount());
     m_refit.prepare(m_device, m_cloth.m_tree, m_methods.m_tree);
     const Tree &cloth = m_scene.m_clothTree, &obstacle = m_scene.m_obstacleTree;
     m_traversal->setTopology(m_device, {cloth.m_nodes, 0, cloth.m_order}, {obstacle.m_nodes, 0, obstacle.m_order});

@@ -22,6 +22,6 @@ void PairStage::enqueue(Device& device, const PairSides& sides, Buffer<Candidate
                                contacts.sums()};
     m_test.launch(device, listWidth(device), listGroup(device), values, candidates, found, sides.m_start, sides.m_end,
                   sides.m_cloths, sides.m_obstacles.m_geometry, sides.m_thickness, contacts.m_contacts,
-                  contacts.m_places, contacts.m_featureCounts, counters);
+                  contacts.m_ranks, contacts.m_featureCounts, counters);
 }
 }  // namespace drape

@@ -51,7 +51,7 @@ ObstacleView TreeScene::obstacle() const
     return {m_obstaclePositions.data(), m_obstacles.triangles().data(), m_vertexCones.data(), m_edgeCones.data()};
 }
 
-std::size_t TreeScene::slotCount() const
+std::size_t TreeScene::featureCount() const
 {
     return m_cloths.vertexCount() + m_cloths.triangles().size() + m_cloths.edges().size();
 }

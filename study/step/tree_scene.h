@@ -21,7 +21,7 @@ struct TreeScene
     ClothView cloth(const float* start, const float* end, std::uint32_t mode) const;
     ObstacleView obstacle() const;
     // Slots of contacts of the cloths' nodes, faces and edges.
-    std::size_t slotCount() const;
+    std::size_t featureCount() const;
 
     MeshPool m_cloths, m_obstacles;
     Tree m_clothTree, m_obstacleTree;

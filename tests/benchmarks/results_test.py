@@ -40,7 +40,7 @@ class Reduced(ProgramTest):
 
     def test_memory_is_summed(self):
         self.reduce(self.row(), self.row(stage="memory: cloth edges", bytes=3),
-                    self.row(stage="memory: step hits", bytes=4))
+                    self.row(stage="memory: unsorted contacts", bytes=4))
         self.assertEqual(self.cells("bytes"), ["7"])
 
     def test_void_rows_are_named_and_left_out(self):

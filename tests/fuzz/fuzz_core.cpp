@@ -116,7 +116,7 @@ void writeNodes(drape::Pipeline& pipeline, Bytes& bytes, std::vector<Mesh>& clot
 
 bool isBefore(const drape::Contact& a, const drape::Contact& b)
 {
-    return std::tie(a.m_slot, a.m_obstacleFeature) < std::tie(b.m_slot, b.m_obstacleFeature);
+    return std::tie(a.m_featureIndex, a.m_obstacleFeature) < std::tie(b.m_featureIndex, b.m_obstacleFeature);
 }
 
 bool areSame(const drape::Contact& a, const drape::Contact& b)

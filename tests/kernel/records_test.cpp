@@ -84,7 +84,7 @@ std::vector<Field> stepFields()
             DRAPE_TEST_OFFSET(StepCounters, m_selfPairs),
             DRAPE_TEST_OFFSET(StepCounters, m_selfTests),
             DRAPE_TEST_OFFSET(StepCounters, m_selfSwept),
-            DRAPE_TEST_OFFSET(Contact, m_slot),
+            DRAPE_TEST_OFFSET(Contact, m_featureIndex),
             DRAPE_TEST_OFFSET(Contact, m_kind),
             DRAPE_TEST_OFFSET(Contact, m_clothFeature),
             DRAPE_TEST_OFFSET(Contact, m_obstacleFeature),

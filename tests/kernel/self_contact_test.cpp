@@ -67,20 +67,21 @@ public:
                         std::min<std::size_t>(m_read.m_selfTests, m_stage.tests().capacity()));
     }
 
-    // Hits of the tests of the last cull, in no order, behind `behind` others; with room for `room`, as many as fit.
+    // Contacts from the tests of the last cull, in no order, behind `behind` others; with room for `room`, as many as
+    // fit.
     std::vector<Contact> contacts(std::size_t behind, std::size_t room = SIZE_MAX)
     {
         const MeshPool& pool = m_side.m_pool;
         const std::size_t tests = std::min<std::size_t>(m_read.m_selfTests, m_stage.tests().capacity());
-        const std::size_t slots = 2 * (pool.vertexCount() + pool.triangles().size() + pool.edges().size());
+        const std::size_t features = 2 * (pool.vertexCount() + pool.triangles().size() + pool.edges().size());
         UnsortedContacts list;
-        EXPECT_LE(slots, DRAPE_MOST_SUMMED);
+        EXPECT_LE(features, DRAPE_MOST_SUMMED);
         m_read.m_contactsFound = cl_uint(behind);
         guardCopy(m_device, m_counters, std::vector<StepCounters>{m_read});
-        list.resizeFeatures(m_device, slots);
+        list.resizeFeatures(m_device, features);
         guard(m_device, list.m_contacts, behind + std::min(tests, room));
         const std::size_t sums = list.sums();
-        if (sums > 0) guard(m_device, list.m_places, behind + std::min(tests, room));
+        if (sums > 0) guard(m_device, list.m_ranks, behind + std::min(tests, room));
         guardCopy(m_device, list.m_featureCounts, std::vector<cl_uint>(list.m_featureCounts.capacity(), 0));
         m_stage.enqueueContacts(m_device, input(), list, m_counters);
         m_read = readCounters(m_device, m_counters);
@@ -89,19 +90,19 @@ public:
         const std::size_t listed = std::min<std::size_t>(m_read.m_contactsFound, behind + std::min(tests, room));
         std::vector<Contact> all = contents(m_device, list.m_contacts, listed);
         all.erase(all.begin(), all.begin() + std::ptrdiff_t(behind));
-        std::vector<cl_uint> expected(slots, 0);
+        std::vector<cl_uint> expected(features, 0);
         for (const Contact& contact : all)
-            ++expected[contact.m_slot];
+            ++expected[contact.m_featureIndex];
         EXPECT_EQ(sums > 0, m_device.isGpu());  // elsewhere nobody asks for them
         std::vector<cl_uint> counts = contents(m_device, list.m_featureCounts, list.m_featureCounts.capacity());
         if (sums > 0)
         {
-            expectPlaces(all, contents(m_device, list.m_places, behind + all.size()), behind);
+            expectRanks(all, contents(m_device, list.m_ranks, behind + all.size()), behind);
             EXPECT_EQ(std::vector<cl_uint>(counts.begin() + std::ptrdiff_t(sums), counts.end()),
                       featureSumsOf(expected));
-            EXPECT_TRUE(intact(m_device, list.m_places));
+            EXPECT_TRUE(intact(m_device, list.m_ranks));
         }
-        counts.resize(slots);
+        counts.resize(features);
         EXPECT_EQ(counts, expected);
         return all;
     }
@@ -124,14 +125,15 @@ public:
     std::uint64_t m_candidates = 0;
 
 private:
-    // Expects that each hit has its own position among those of its slot.
-    static void expectPlaces(const std::vector<Contact>& hits, const std::vector<cl_uint>& places, std::size_t behind)
+    // Expects that each contact has its own rank among those of its feature.
+    static void expectRanks(const std::vector<Contact>& contacts, const std::vector<cl_uint>& ranks, std::size_t behind)
     {
-        std::map<cl_uint, std::set<cl_uint>> ofSlot;
-        for (std::size_t i = 0; i < hits.size(); ++i)
-            EXPECT_TRUE(ofSlot[hits[i].m_slot].insert(places[behind + i]).second) << "slot " << hits[i].m_slot;
-        for (const auto& [slot, taken] : ofSlot)
-            EXPECT_EQ(*taken.rbegin() + 1, taken.size()) << "slot " << slot;
+        std::map<cl_uint, std::set<cl_uint>> ofFeature;
+        for (std::size_t i = 0; i < contacts.size(); ++i)
+            EXPECT_TRUE(ofFeature[contacts[i].m_featureIndex].insert(ranks[behind + i]).second)
+                << "feature " << contacts[i].m_featureIndex;
+        for (const auto& [feature, taken] : ofFeature)
+            EXPECT_EQ(*taken.rbegin() + 1, taken.size()) << "feature " << feature;
     }
 
     Device& m_device;

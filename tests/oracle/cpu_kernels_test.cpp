@@ -56,11 +56,11 @@ public:
     {
         const MeshPool& pool = m_cloth.m_pool;
         std::vector<Contact> unsorted(m_counters.m_candidates), contacts;
-        std::vector<std::uint32_t> slots(pool.vertexCount() + pool.triangles().size() + pool.edges().size(), 0);
+        std::vector<std::uint32_t> featureCounts(pool.vertexCount() + pool.triangles().size() + pool.edges().size(), 0);
         std::vector<std::uint32_t> swept(m_counters.m_candidates);
         const FeatureInput input = {m_cull.tests().data(), m_counters.m_candidates, m_view,
                                     m_obstacle.obstacle(), m_cull.packed(),         nullptr};
-        const ContactSink sink = {unsorted.data(), std::uint32_t(unsorted.size()), nullptr, slots.data(),
+        const ContactSink sink = {unsorted.data(), std::uint32_t(unsorted.size()), nullptr, featureCounts.data(),
                                   nullptr,         &m_counters.m_contactsFound};
         const auto run = [&](auto kernel, std::size_t items)
         {
@@ -69,7 +69,7 @@ public:
         };
         run(m_kernels.m_findContacts, 1 + m_counters.m_candidates / 100);
         run(m_kernels.m_findSwept, 6);
-        orderContacts(unsorted.data(), m_counters.m_contactsFound, slots, contacts, threads);
+        orderContacts(unsorted.data(), m_counters.m_contactsFound, featureCounts, contacts, threads);
         return contacts;
     }
 

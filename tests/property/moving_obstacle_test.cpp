@@ -46,7 +46,7 @@ std::vector<Contact> runOpposite(Pipeline& pipeline, const MovingCase& moving)
 
 bool sameFeatures(const Contact& a, const Contact& b)
 {
-    return a.m_slot == b.m_slot && a.m_kind == b.m_kind && a.m_obstacleFeature == b.m_obstacleFeature;
+    return a.m_featureIndex == b.m_featureIndex && a.m_kind == b.m_kind && a.m_obstacleFeature == b.m_obstacleFeature;
 }
 
 // Counts the contacts of `a` that are in `b` with numbers that differ by rounding only. Both are in canonical order.

@@ -67,7 +67,8 @@ TEST_P(PipelineTest, ContactsComeInCanonicalOrderAndOnce)
     for (std::size_t i = 1; i < contacts.size(); ++i)
     {
         const Contact &a = contacts[i - 1], &b = contacts[i];
-        ASSERT_TRUE(a.m_slot < b.m_slot || (a.m_slot == b.m_slot && a.m_obstacleFeature < b.m_obstacleFeature));
+        ASSERT_TRUE(a.m_featureIndex < b.m_featureIndex ||
+                    (a.m_featureIndex == b.m_featureIndex && a.m_obstacleFeature < b.m_obstacleFeature));
         ASSERT_LE(a.m_kind, b.m_kind);
     }
     EXPECT_EQ(pipeline->statistics().m_contacts, contacts.size());
@@ -81,7 +82,7 @@ namespace
 std::vector<Contact> withoutNumbers(std::vector<Contact> contacts)
 {
     for (Contact& contact : contacts)
-        contact.m_slot = contact.m_clothFeature = contact.m_obstacleFeature = 0;
+        contact.m_featureIndex = contact.m_clothFeature = contact.m_obstacleFeature = 0;
     return contacts;
 }
 

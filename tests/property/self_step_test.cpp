@@ -102,8 +102,8 @@ TEST_P(SelfStepTest, EveryBackEndFindsTheSame)
             swept += expected.m_counts.m_swept;
             for (std::size_t i = 1; i < found.size(); ++i)
             {
-                EXPECT_TRUE(found[i - 1].m_slot < found[i].m_slot ||
-                            (found[i - 1].m_slot == found[i].m_slot &&
+                EXPECT_TRUE(found[i - 1].m_featureIndex < found[i].m_featureIndex ||
+                            (found[i - 1].m_featureIndex == found[i].m_featureIndex &&
                              found[i - 1].m_obstacleFeature < found[i].m_obstacleFeature));
             }
         }

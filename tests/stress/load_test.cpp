@@ -44,14 +44,14 @@ TEST_P(LoadTest, CoincidentTriangles)
     EXPECT_TRUE(sameBytes(again, contacts)) << difference(again, contacts);
 }
 
-// Slots with so many hits that a launch of their own puts them in order, long after the last step that had some: the
-// step runs again for it. Lists have room from before.
+// Features with so many contacts that a launch of their own puts them in order, long after the last step that had some:
+// the step runs again for it. Lists have room from before.
 TEST_P(LoadTest, CrowdsComeBackInOrder)
 {
     constexpr int kObstacleTriangles = 1000, kStepsWithout = 200, kOtherTriangles = 6000;
-    for (const bool manySlots : {false, true})
+    for (const bool manyFeatures : {false, true})
     {
-        SCOPED_TRACE(manySlots ? "many slots" : "few slots");
+        SCOPED_TRACE(manyFeatures ? "many features" : "few features");
         const std::unique_ptr<Pipeline> pipeline = makePipeline(GetParam().m_settings);
         ASSERT_TRUE(pipeline);
         StepCase step = {"a crowd", 0,   coincidentTriangles(2, 0.02f), coincidentTriangles(kObstacleTriangles, 0.0f),
@@ -59,11 +59,11 @@ TEST_P(LoadTest, CrowdsComeBackInOrder)
         step.m_end = step.m_cloth.m_positions;
         runCase(*pipeline, step);
         const TriangleMesh other = coincidentTriangles(kOtherTriangles, 50.0f);
-        const MeshId idle = manySlots ? addCloth(*pipeline, other) : 0;
+        const MeshId idle = manyFeatures ? addCloth(*pipeline, other) : 0;
         const auto run = [&](const std::vector<float>& positions)
         {
             setMotion(*pipeline, 0, positions, positions);
-            if (manySlots) setMotion(*pipeline, idle, other.m_positions, other.m_positions);
+            if (manyFeatures) setMotion(*pipeline, idle, other.m_positions, other.m_positions);
             pipeline->addPair(0, 1, step.m_thickness);
             return runStep(*pipeline);
         };
@@ -109,7 +109,7 @@ TEST_P(LoadTest, HundredThousandCoincidentTriangles)
         ASSERT_EQ(contacts.size(), alone.size());
         for (std::size_t i = 0; i < contacts.size(); ++i)
         {
-            // Slots are counted over all cloths, features of the first one stay.
+            // Feature indices count over all cloths; those of the first one stay.
             EXPECT_EQ(contacts[i].m_obstacleFeature, alone[i].m_obstacleFeature);
             EXPECT_EQ(std::memcmp(contacts[i].m_normal, alone[i].m_normal, sizeof(Contact) - 4 * sizeof(std::uint32_t)),
                       0)

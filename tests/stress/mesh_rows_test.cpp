@@ -85,7 +85,7 @@ void expectSameButForNumbers(const std::vector<Keyed>& found, const std::vector<
     {
         Contact contact = found[i].m_contact;
         const Contact& other = wanted[i].m_contact;
-        contact.m_slot = other.m_slot;
+        contact.m_featureIndex = other.m_featureIndex;
         contact.m_clothFeature = other.m_clothFeature;
         contact.m_obstacleFeature = other.m_obstacleFeature;
         EXPECT_EQ(std::memcmp(&contact, &other, sizeof contact), 0) << describe(contact) << '\n' << describe(other);

@@ -7,12 +7,12 @@
 
 namespace drape::test
 {
-// Returns the sums over slots that have these numbers of hits.
+// Returns the sums over features that have these numbers of contacts.
 inline std::vector<std::uint32_t> featureSumsOf(const std::vector<std::uint32_t>& counts)
 {
     std::vector<std::uint32_t> sums(DRAPE_FEATURE_SUMS, 0);
-    for (std::size_t slot = 0; slot < counts.size(); ++slot)
-        sums[slot / DRAPE_SUMMED] += counts[slot];
+    for (std::size_t feature = 0; feature < counts.size(); ++feature)
+        sums[feature / DRAPE_SUMMED] += counts[feature];
     return sums;
 }
 }  // namespace drape::test

@@ -133,10 +133,10 @@ std::string describe(const Contact& contact)
     std::ostringstream text;
     text.precision(9);
     text << (contact.m_kind < 3 ? kKinds[contact.m_kind] : "unknown kind") << " cloth " << contact.m_clothFeature
-         << " obstacle " << contact.m_obstacleFeature << " slot " << contact.m_slot << " normal " << contact.m_normal[0]
-         << ' ' << contact.m_normal[1] << ' ' << contact.m_normal[2] << " gaps " << contact.m_gap0 << ' '
-         << contact.m_gap1 << " time " << contact.m_time << " weights " << contact.m_weights[0] << ' '
-         << contact.m_weights[1] << ' ' << contact.m_weights[2];
+         << " obstacle " << contact.m_obstacleFeature << " slot " << contact.m_featureIndex << " normal "
+         << contact.m_normal[0] << ' ' << contact.m_normal[1] << ' ' << contact.m_normal[2] << " gaps "
+         << contact.m_gap0 << ' ' << contact.m_gap1 << " time " << contact.m_time << " weights " << contact.m_weights[0]
+         << ' ' << contact.m_weights[1] << ' ' << contact.m_weights[2];
     return text.str();
 }
 

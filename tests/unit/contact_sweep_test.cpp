@@ -70,7 +70,7 @@ std::vector<FeatureContacts> featuresOf(const Pipeline& pipeline, const FeatureO
     for (const Contact& contact : contacts)
     {
         const ClothFeature cloth = pipeline.clothFeature(contact);
-        if (features.empty() || features.back().m_contacts->m_slot != contact.m_slot)
+        if (features.empty() || features.back().m_contacts->m_featureIndex != contact.m_featureIndex)
             features.push_back({&contact, 0, &order.features()[cloth.m_index], 1});
         ++features.back().m_count;
     }

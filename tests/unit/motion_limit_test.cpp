@@ -26,7 +26,7 @@ bool same(Vec3 a, Vec3 b)
 }
 
 // Nodes with a displacement. Some are pinned and one has none; every third has contacts.
-struct Strayed
+struct OffPath
 {
     SolverNodes m_nodes;
     MotionLimit m_limit;
@@ -35,7 +35,7 @@ struct Strayed
 
     static bool hasContact(std::size_t node) { return node % 3 == 0; }
 
-    explicit Strayed(std::uint32_t seed)
+    explicit OffPath(std::uint32_t seed)
     {
         Random random(seed);
         const auto vector = [&random](float most)
@@ -72,23 +72,23 @@ struct Strayed
 TEST(MotionLimit, LimitsNodesWithContactsOneByOne)
 {
     SCOPED_TRACE("seed 4");
-    Strayed strayed(4), alone(4);
-    ASSERT_TRUE(strayed.m_limit.obstaclesRest());
-    strayed.m_limit.apply(strayed.m_nodes);
+    OffPath cloth(4), alone(4);
+    ASSERT_TRUE(cloth.m_limit.obstaclesRest());
+    cloth.m_limit.apply(cloth.m_nodes);
     std::size_t brought = 0, left = 0;
     for (std::size_t i = 0; i < kNodes; ++i)
     {
         alone.m_limit.keepNear(alone.m_nodes, i);
         if (i == kNotANumber) continue;
-        if (!Strayed::hasContact(i))
+        if (!OffPath::hasContact(i))
         {
             EXPECT_FALSE(alone.wasMoved(i)) << "node " << i;
             continue;
         }
-        EXPECT_TRUE(same(alone.m_nodes.displacement(i), strayed.m_nodes.displacement(i))) << "node " << i;
-        EXPECT_EQ(alone.m_nodes.isShifted(i), strayed.m_nodes.isShifted(i)) << "node " << i;
-        EXPECT_EQ(alone.m_nodes.isShifted(i), strayed.wasMoved(i)) << "node " << i;
-        ++(strayed.wasMoved(i) ? brought : left);
+        EXPECT_TRUE(same(alone.m_nodes.displacement(i), cloth.m_nodes.displacement(i))) << "node " << i;
+        EXPECT_EQ(alone.m_nodes.isShifted(i), cloth.m_nodes.isShifted(i)) << "node " << i;
+        EXPECT_EQ(alone.m_nodes.isShifted(i), cloth.wasMoved(i)) << "node " << i;
+        ++(cloth.wasMoved(i) ? brought : left);
     }
     EXPECT_GT(brought, kNodes / 12);
     EXPECT_GT(left, kNodes / 24);
@@ -97,21 +97,21 @@ TEST(MotionLimit, LimitsNodesWithContactsOneByOne)
 TEST(MotionLimit, LimitsNodesWithoutContactsSeparately)
 {
     SCOPED_TRACE("seed 4");
-    Strayed strayed(4), whole(4);
+    OffPath cloth(4), whole(4);
     whole.m_limit.apply(whole.m_nodes);
-    strayed.m_limit.applyToOthers(strayed.m_nodes);
+    cloth.m_limit.applyToOthers(cloth.m_nodes);
     std::size_t brought = 0;
     for (std::size_t i = 0; i < kNodes; ++i)
     {
         if (i == kNotANumber) continue;
-        if (Strayed::hasContact(i))
+        if (OffPath::hasContact(i))
         {
-            EXPECT_FALSE(strayed.wasMoved(i)) << "node " << i;
+            EXPECT_FALSE(cloth.wasMoved(i)) << "node " << i;
             continue;
         }
-        EXPECT_TRUE(same(strayed.m_nodes.displacement(i), whole.m_nodes.displacement(i))) << "node " << i;
-        EXPECT_EQ(strayed.m_nodes.isShifted(i), whole.m_nodes.isShifted(i)) << "node " << i;
-        brought += strayed.wasMoved(i) ? 1 : 0;
+        EXPECT_TRUE(same(cloth.m_nodes.displacement(i), whole.m_nodes.displacement(i))) << "node " << i;
+        EXPECT_EQ(cloth.m_nodes.isShifted(i), whole.m_nodes.isShifted(i)) << "node " << i;
+        brought += cloth.wasMoved(i) ? 1 : 0;
     }
     EXPECT_GT(brought, kNodes / 12);
 }
@@ -119,10 +119,10 @@ TEST(MotionLimit, LimitsNodesWithoutContactsSeparately)
 TEST(MotionLimit, LeavesFixedNodesAlone)
 {
     SCOPED_TRACE("seed 4");
-    Strayed strayed(4);
-    strayed.m_limit.apply(strayed.m_nodes);
+    OffPath cloth(4);
+    cloth.m_limit.apply(cloth.m_nodes);
     for (std::size_t i = 0; i < kNodes; i += 7)
-        EXPECT_FALSE(strayed.wasMoved(i)) << "node " << i;
+        EXPECT_FALSE(cloth.wasMoved(i)) << "node " << i;
 }
 
 // Each face limits all of its nodes. Faces share nodes, come in any order and with any node first, and may be given
@@ -133,7 +133,7 @@ TEST(MotionLimit, HonoursEveryFaceOfANode)
     std::vector<Vec3> expected;
     for (int turn = 0; turn < 4; ++turn)
     {
-        Strayed strayed(5);
+        OffPath cloth(5);
         Random random(6);  // identical faces in each iteration
         std::vector<std::int32_t> triangles;
         for (std::size_t i = 0; i < 3 * 2 * kNodes; ++i)
@@ -148,18 +148,18 @@ TEST(MotionLimit, HonoursEveryFaceOfANode)
             triangles.insert(triangles.end(), again.begin(), again.end());
         }
         const ClothFaces faces(std::move(triangles), kNodes);
-        strayed.m_limit.startStep(faces);
-        strayed.m_limit.apply(strayed.m_nodes);
+        cloth.m_limit.startStep(faces);
+        cloth.m_limit.apply(cloth.m_nodes);
         std::vector<Vec3> places;
         for (std::size_t i = 0; i < kNodes; ++i)
-            places.push_back(strayed.m_nodes.displacement(i));
+            places.push_back(cloth.m_nodes.displacement(i));
         if (turn == 0) expected = places;
         std::size_t brought = 0;
         for (std::size_t i = 0; i < kNodes; ++i)
         {
             if (i == kNotANumber) continue;
             EXPECT_TRUE(same(places[i], expected[i])) << "node " << i << ", turn " << turn;
-            brought += strayed.wasMoved(i) ? 1 : 0;
+            brought += cloth.wasMoved(i) ? 1 : 0;
         }
         EXPECT_GT(brought, kNodes / 4);
         EXPECT_LT(brought, kNodes);
@@ -259,7 +259,7 @@ TEST(MotionLimit, LimitsTrianglesThatArePulledOverACorner)
                 nodes.setPath(i, starts[i], vec3(0, 0, 0), vec3(0, 0, 0), 1);
                 nodes.setCurrent(i, pull, vec3(0, 0, 0));
             }
-            EXPECT_EQ(limit.strayed(nodes), joined);
+            EXPECT_EQ(limit.anyOffPath(nodes), joined);
             limit.apply(nodes);
             const float most = joined ? kFreeShare * 1.5f * kThickness : vec3Length(pull);
             for (std::size_t i = 0; i < 3; ++i)

@@ -60,7 +60,7 @@ void PlainSweep::sortRows(const ClothContacts& cloth)
     for (Row& row : m_rows)
     {
         row.m_group = cloth.m_parts->groupOf(row.m_contact.m_nodes);
-        row.m_colour = colours[row.m_detected.m_slot];  // there is one cloth
+        row.m_colour = colours[row.m_detected.m_featureIndex];  // there is one cloth
     }
     const auto keyOf = [](const Row& row)
     { return std::make_tuple(-std::ptrdiff_t(row.m_group), kindOf(row.m_contact), row.m_colour); };

@@ -117,8 +117,8 @@ void DeviceBackend::updateTopology(const Scene& scene)
     if (!m_cloths.knows(scene))
     {
         m_cloths.update(*m_device, scene);
-        m_unsorted.resizeFeatures(*m_device, scene.allSlotCount());
-        m_ordering.resizeFeatures(*m_device, scene.allSlotCount());
+        m_unsorted.resizeFeatures(*m_device, scene.allFeatureCount());
+        m_ordering.resizeFeatures(*m_device, scene.allFeatureCount());
         if (scene.m_anySelf) m_self.setTopology(*m_device, scene.m_cloths, scene.m_clothRest);
     }
     m_obstacles.update(*m_device, scene);

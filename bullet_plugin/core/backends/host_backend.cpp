@@ -103,8 +103,8 @@ void HostBackend::runPairs(const Scene& scene, const StepPairs& pairs, StepCount
     const FeatureInput input = {m_cull.tests().data(), counters.m_candidates, cloths.m_cloth,
                                 m_placed.view(scene),  m_cull.packed(),       pairs.m_motions.data()};
     statistics.m_retries +=
-        m_contacts.find(kernels.m_findContacts, kernels.m_findSwept, &StepCounters::m_swept, input, scene.slotCount(),
-                        {m_limits.m_contacts, pairs.m_limits.m_swept}, *m_threads, counters);
+        m_contacts.find(kernels.m_findContacts, kernels.m_findSwept, &StepCounters::m_swept, input,
+                        scene.featureCount(), {m_limits.m_contacts, pairs.m_limits.m_swept}, *m_threads, counters);
     result.m_overLimit = result.m_overTests = counters.m_swept > pairs.m_limits.m_swept;
     if (result.m_overLimit) return;
     result.m_overLimit = counters.m_contactsFound > m_limits.m_contacts;

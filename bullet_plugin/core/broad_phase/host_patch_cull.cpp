@@ -41,14 +41,14 @@ void HostPatchCull::pack(SlotRange slots, const ObstacleView& obstacle)
     if (!patches.empty()) packFeatures(patches, obstacle);
     for (const LevelPlaces& changed : changedPlaces(m_layout, patches, m_levelsMoved, kWidth))
     {
-        const ItemRange places = changed.m_places;
+        const ItemRange entries = changed.m_entries;
         const std::vector<std::uint32_t>& levels = m_layout.m_levels;
         if (changed.m_level == 0)
-            m_kernels->m_packVolumes(m_layout.m_faceOwners.data(), std::uint32_t(changed.m_children), places.first(),
-                                     places.last(), obstacle, m_wideNodes.data(), m_sizes.data(), m_volumes.data());
+            m_kernels->m_packVolumes(m_layout.m_faceOwners.data(), std::uint32_t(changed.m_children), entries.first(),
+                                     entries.last(), obstacle, m_wideNodes.data(), m_sizes.data(), m_volumes.data());
         else
             m_kernels->m_widen(m_wideNodes.data(), levels[changed.m_level - 1], std::uint32_t(changed.m_children),
-                               levels[changed.m_level], places.first(), places.last());
+                               levels[changed.m_level], entries.first(), entries.last());
     }
     m_levelsMoved = false;
 }

@@ -58,9 +58,9 @@ bool HostSelfPatches::isWorth(const SelfStep& step) const
 void HostSelfPatches::pack(const SelfStep& step, ThreadTeam& threads)
 {
     const SelfRadii radii = radiiOf(step);
-    runShared(threads, isWorth(step), m_patches.m_places,
-              [&](std::size_t place)
-              { m_kernels->m_self->m_pack(std::uint32_t(place), step.m_view.m_cloth, radii, m_patches, &m_counters); });
+    runShared(threads, isWorth(step), m_patches.m_entries,
+              [&](std::size_t entry)
+              { m_kernels->m_self->m_pack(std::uint32_t(entry), step.m_view.m_cloth, radii, m_patches, &m_counters); });
     const std::vector<std::uint32_t>& levels = m_layout.m_levels;
     for (std::size_t level = 1; level + 1 < levels.size(); ++level)
         m_kernels->m_widen(m_wideNodes.data(), levels[level - 1], levels[level] - levels[level - 1], levels[level], 0,
@@ -115,12 +115,12 @@ void HostSelfPatches::findContacts(const SelfStep& step, SelfStepLimits limits, 
 {
     if (m_counters.m_selfTests > limits.m_candidates) return;
     const ClothView& cloth = step.m_view.m_cloth;
-    const std::uint32_t firstSlot =
-        firstSelfSlot(cloth.m_nodeCount, cloth.m_triangleCount, std::uint32_t(step.m_cloths.edges().size()));
-    const SelfInput input = {m_tests.data(), m_counters.m_selfTests, step.m_view, firstSlot};
+    const std::uint32_t firstFeature =
+        firstSelfFeature(cloth.m_nodeCount, cloth.m_triangleCount, std::uint32_t(step.m_cloths.edges().size()));
+    const SelfInput input = {m_tests.data(), m_counters.m_selfTests, step.m_view, firstFeature};
     const CpuSelfKernels& kernels = *m_kernels->m_self;
     m_retries += m_contacts.find(kernels.m_findContacts, kernels.m_findSwept, &StepCounters::m_selfSwept, input,
-                                 2 * std::size_t(firstSlot), {limits.m_contacts, SIZE_MAX}, threads, m_counters);
+                                 2 * std::size_t(firstFeature), {limits.m_contacts, SIZE_MAX}, threads, m_counters);
     if (m_counters.m_contactsFound <= limits.m_contacts)
         m_contacts.order(m_counters.m_contactsFound, contacts, threads);
 }

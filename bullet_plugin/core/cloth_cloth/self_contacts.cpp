@@ -8,7 +8,7 @@ namespace drape
 namespace
 {
 constexpr std::size_t kGroup = 64;
-constexpr std::size_t kTeamsPerGroup = 8;  // patches per group where a work-item is a team
+constexpr std::size_t kPatchesPerGroup = 8;  // if a work-item handles a patch alone
 constexpr std::size_t kFirstTests = 1 << 16;
 // Warps of a GPU's group that traverses the tree, or that takes pairs of patches; see
 // kernels/cloth_cloth/self_traversal_gpu.cl.
@@ -49,7 +49,7 @@ void SelfContactStage::setTopology(Device& device, const MeshPool& cloths, const
     const bool gpu = device.isGpu();
     const std::uint32_t width = patchWidth(device);
     m_layout = makePatches(cloths, rest.data(), width);
-    m_places = m_layout.m_levels[1] * width;
+    m_entries = m_layout.m_levels[1] * width;
     const std::vector<cl_uint> vertexIds = vertexIdsOf(m_layout.m_vertexOwners, cloths.triangles());
     const std::vector<cl_uint> edgeIds = edgeIdsOf(m_layout.m_edgeOwners, cloths.triangles());
     std::vector<cl_uint> faceNodes, edgeNodes;
@@ -95,7 +95,7 @@ void SelfContactStage::setReach(Device& device, const SelfReach& reach)
 SelfPatchLayout SelfContactStage::layout() const
 {
     return {m_patches.word(),   cl_uint(m_layout.m_patches.size()),
-            m_places,           m_faceIds.word(),
+            m_entries,          m_faceIds.word(),
             m_vertexIds.word(), m_edgeIds.word(),
             m_faceNodes.word(), m_edgeNodes.word(),
             m_levels.word(),    cl_uint(m_layout.m_levels.size() - 1),
@@ -107,8 +107,8 @@ SelfPatchLayout SelfContactStage::layout() const
 void SelfContactStage::enqueuePack(Device& device, const SelfCullValues& values, const Input& input,
                                    Buffer<StepCounters>& counters)
 {
-    const std::size_t width = patchWidth(device), places = values.m_patches.m_places;
-    m_pack.launch(device, device.isGpu() ? places * width : places, device.isGpu() ? width : kTeamsPerGroup, values,
+    const std::size_t width = patchWidth(device), entries = values.m_patches.m_entries;
+    m_pack.launch(device, device.isGpu() ? entries * width : entries, device.isGpu() ? width : kPatchesPerGroup, values,
                   input.m_cloths.m_nodes, input.m_cloths.m_topology, m_radius, input.m_obstacleRadius, m_arena,
                   counters);
     for (std::size_t level = 1; level + 1 < m_layout.m_levels.size(); ++level)
@@ -130,7 +130,7 @@ void SelfContactStage::enqueueCull(Device& device, const Input& input, Buffer<St
     enqueuePack(device, values, input, counters);
     if (!device.isGpu())
     {
-        m_cull.launch(device, patchCount, kTeamsPerGroup, values, input.m_cloths.m_nodes, input.m_cloths.m_topology,
+        m_cull.launch(device, patchCount, kPatchesPerGroup, values, input.m_cloths.m_nodes, input.m_cloths.m_topology,
                       m_radius, m_thickness, m_arena, m_tests.m_tests, counters);
         return;
     }
@@ -146,7 +146,7 @@ void SelfContactStage::enqueueContacts(Device& device, const Input& input, Unsor
     const ClothLayout& cloths = input.m_cloths.m_layout;
     const SelfFeatureValues values = {cloths,
                                       cl_uint(m_tests.capacity()),
-                                      firstSelfSlot(cloths.m_nodeCount, cloths.m_triangleCount, cloths.m_edgeCount),
+                                      firstSelfFeature(cloths.m_nodeCount, cloths.m_triangleCount, cloths.m_edgeCount),
                                       input.m_mode,
                                       input.m_reachScale,
                                       cl_uint(contacts.capacity()),
@@ -155,7 +155,7 @@ void SelfContactStage::enqueueContacts(Device& device, const Input& input, Unsor
     const auto launch = [&](auto& kernel, std::size_t width, std::size_t group)
     {
         kernel.launch(device, width, group, values, m_tests.m_tests, input.m_cloths.m_nodes, m_rest,
-                      input.m_cloths.m_topology, contacts.m_contacts, contacts.m_places, contacts.m_featureCounts,
+                      input.m_cloths.m_topology, contacts.m_contacts, contacts.m_ranks, contacts.m_featureCounts,
                       counters, m_tests.m_swept);
     };
     launch(m_feature, laneListWidth(device), device.isGpu() ? listGroup(device) : 1);

@@ -62,7 +62,7 @@ private:
     BoundKernel<kernels::selfFeature> m_feature;
     BoundKernel<kernels::selfSwept> m_swept;
     Patches m_layout;
-    std::uint32_t m_places = 0;  // positions in the wide tree's lowest level
+    std::uint32_t m_entries = 0;  // positions in the wide tree's lowest level
     bool m_created = false;
     Arena<PatchWord> m_arena;
     ArenaArray<Patch> m_patches{m_arena, "self patches"};

@@ -8,7 +8,7 @@
 #include "kernels/lib/lane_contacts.h"
 #include "opencl_words.h"
 
-static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "team.h takes a mask's bytes for such a CPU's");
+static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "simd_group.h takes a mask's bytes for such a CPU's");
 
 namespace drape
 {

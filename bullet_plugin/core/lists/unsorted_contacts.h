@@ -36,7 +36,7 @@ public:
     void release()
     {
         m_contacts.release();
-        m_places.release();
+        m_ranks.release();
     }
 
     std::size_t capacity() const { return m_contacts.capacity(); }
@@ -46,17 +46,17 @@ public:
     // Returns the position of the sums behind the features' numbers; 0 if there are none.
     cl_uint sums() const { return cl_uint(m_sums); }
 
-    Buffer<Contact> m_contacts{"step hits"};
-    Buffer<cl_uint> m_places{"step hits"};  // only with sums
-    Buffer<cl_uint> m_featureCounts{"cloth slots"};
+    Buffer<Contact> m_contacts{"unsorted contacts"};
+    Buffer<cl_uint> m_ranks{"unsorted contacts"};  // only with sums
+    Buffer<cl_uint> m_featureCounts{"cloth features"};
 
 private:
     void reservePlaces(Device& device)
     {
         if (m_sums > 0)
-            m_places.reserve(device, m_contacts.capacity());
+            m_ranks.reserve(device, m_contacts.capacity());
         else
-            m_places.release();
+            m_ranks.release();
     }
 
     std::size_t m_features = 0, m_sums = 0;

@@ -77,7 +77,7 @@ private:
     static constexpr std::size_t kLeastSweptShared = 1 << 6;
 
     std::vector<Contact> m_contacts;
-    std::vector<std::uint32_t> m_featureCounts;  // number of contacts by slot
+    std::vector<std::uint32_t> m_featureCounts;  // number of contacts by feature
     std::vector<std::uint32_t> m_swept;          // tests that the continuous test decides
 };
 }  // namespace drape

@@ -45,7 +45,7 @@ void NarrowPhaseStage::enqueue(Device& device, const Input& input, FeatureTestLi
     {
         kernel.launch(device, width, group, values, tests.m_tests, input.m_cloths.m_nodes, input.m_cloths.m_topology,
                       input.m_obstacles.m_geometry, input.m_patches.m_patches, input.m_motions, contacts.m_contacts,
-                      contacts.m_places, contacts.m_featureCounts, counters, swept...);
+                      contacts.m_ranks, contacts.m_featureCounts, counters, swept...);
     };
     tests.m_swept.reserve(device, tests.capacity());
     const bool few = expected.m_tests <= device.computeUnits() * kFewTestsPerUnit;

@@ -15,13 +15,13 @@ void sortCandidates(std::vector<Candidate>& candidates)
 
 namespace
 {
-// Contacts, or slots, per thread and turn, and the minimum number of contacts for waking other threads.
+// Contacts, or features, per thread and turn, and the minimum number of contacts for waking other threads.
 constexpr std::size_t kPiece = 512;
 constexpr std::size_t kLeastShared = 1 << 12;
 
 bool comesBefore(const Contact& a, const Contact& b)
 {
-    return std::tie(a.m_slot, a.m_obstacleFeature) < std::tie(b.m_slot, b.m_obstacleFeature);
+    return std::tie(a.m_featureIndex, a.m_obstacleFeature) < std::tie(b.m_featureIndex, b.m_obstacleFeature);
 }
 }  // namespace
 
@@ -37,14 +37,14 @@ void orderContacts(const Contact* unsorted, std::size_t count, std::vector<std::
     for (std::uint32_t& number : featureCounts)
         first += std::exchange(number, first);
     contacts.resize(contacts.size() + count);
-    // Fills each slot's positions in any order; the sort of the slot follows.
+    // Fills each feature's positions in any order; the sort of the feature follows.
     std::vector<std::uint32_t> last = featureCounts;
     const auto place = [&](std::size_t i)
-    { contacts[__atomic_fetch_add(&last[unsorted[i].m_slot], 1u, __ATOMIC_RELAXED)] = unsorted[i]; };
-    const auto sort = [&](std::size_t slot)
+    { contacts[__atomic_fetch_add(&last[unsorted[i].m_featureIndex], 1u, __ATOMIC_RELAXED)] = unsorted[i]; };
+    const auto sort = [&](std::size_t feature)
     {
-        if (last[slot] - featureCounts[slot] > 1)
-            std::sort(contacts.begin() + featureCounts[slot], contacts.begin() + last[slot], comesBefore);
+        if (last[feature] - featureCounts[feature] > 1)
+            std::sort(contacts.begin() + featureCounts[feature], contacts.begin() + last[feature], comesBefore);
     };
     const auto forPieces = [&](std::size_t items, const auto& one)
     {

@@ -75,7 +75,7 @@ void OrderingStage::enqueueGather(Device& device, const OrderingValues& step, Un
     if (step.m_sums > 0)
     {
         m_gatherSmall.launch(device, listWidth(device, step.m_features + tally.m_contacts), listGroup(device), step,
-                             unsorted.m_contacts, unsorted.m_places, unsorted.m_featureCounts, m_firsts, m_members,
+                             unsorted.m_contacts, unsorted.m_ranks, unsorted.m_featureCounts, m_firsts, m_members,
                              m_keys, tally.m_now, tally.m_next);
         return;
     }

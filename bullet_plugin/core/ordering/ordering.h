@@ -55,7 +55,7 @@ private:
     BoundKernel<kernels::orderingSort> m_sort;
     BoundKernel<kernels::orderingWrite> m_write;
     Buffer<Contact> m_contacts{"step contacts"};
-    Buffer<cl_uint> m_firsts{"cloth slots"}, m_blockCounts{"cloth slots"};
-    Buffer<cl_uint> m_members{"step hits"}, m_keys{"step hits"};
+    Buffer<cl_uint> m_firsts{"cloth features"}, m_blockCounts{"cloth features"};
+    Buffer<cl_uint> m_members{"unsorted contacts"}, m_keys{"unsorted contacts"};
 };
 }  // namespace drape

@@ -13,7 +13,7 @@ namespace
 {
 struct PooledFeature
 {
-    std::size_t m_slot = 0;                                  // the mesh's slot
+    std::size_t m_meshSlot = 0;                              // the mesh's slot
     std::uint32_t m_keptTriangle = 0;                        // in the mesh's topology
     std::uint32_t m_nodes[3] = {kNoMesh, kNoMesh, kNoMesh};  // over all meshes
 };
@@ -24,22 +24,22 @@ PooledFeature pooledFeature(const MeshPool& cloths, const Contact& contact)
     const std::uint32_t index = contact.m_clothFeature;
     if (contact.m_kind == DRAPE_NODE_FACE)
     {
-        feature.m_slot = cloths.slotOfVertex(index);
-        const PooledMesh& mesh = cloths.mesh(feature.m_slot);
+        feature.m_meshSlot = cloths.slotOfVertex(index);
+        const PooledMesh& mesh = cloths.mesh(feature.m_meshSlot);
         feature.m_keptTriangle = mesh.m_topology.m_vertexTriangle[index - mesh.m_firstVertex];
         feature.m_nodes[0] = index;
     }
     else if (contact.m_kind == DRAPE_FACE_VERTEX)
     {
         const Triangle& triangle = cloths.triangles()[index];
-        feature.m_slot = triangle.m_mesh;
-        feature.m_keptTriangle = index - cloths.mesh(feature.m_slot).m_firstTriangle;
+        feature.m_meshSlot = triangle.m_mesh;
+        feature.m_keptTriangle = index - cloths.mesh(feature.m_meshSlot).m_firstTriangle;
         std::copy(triangle.m_vertices, triangle.m_vertices + (isSegment(&triangle) ? 2 : 3), feature.m_nodes);
     }
     else
     {
-        feature.m_slot = cloths.slotOfEdge(index);
-        const PooledMesh& mesh = cloths.mesh(feature.m_slot);
+        feature.m_meshSlot = cloths.slotOfEdge(index);
+        const PooledMesh& mesh = cloths.mesh(feature.m_meshSlot);
         feature.m_keptTriangle = mesh.m_topology.m_edgeTriangle[index - mesh.m_firstEdge];
         const Edge& edge = cloths.edges()[index];
         std::copy(edge.m_vertices, edge.m_vertices + 2, feature.m_nodes);
@@ -94,7 +94,7 @@ ContactView viewContact(const Scene& scene, const StepPairs& pairs, const Contac
     const MeshPool &cloths = scene.m_cloths, &obstacles = scene.m_obstacles;
     const PooledFeature feature = pooledFeature(cloths, contact);
     const std::size_t obstacle = obstacleSlot(obstacles, contact);
-    const PooledMesh& cloth = cloths.mesh(feature.m_slot);
+    const PooledMesh& cloth = cloths.mesh(feature.m_meshSlot);
     ContactView view;
     view.m_cloth = cloth.m_id;
     view.m_obstacle = obstacles.mesh(obstacle).m_id;
@@ -110,7 +110,7 @@ ContactView viewContact(const Scene& scene, const StepPairs& pairs, const Contac
     view.m_gap0 = contact.m_gap0;
     view.m_gap1 = contact.m_gap1;
     view.m_time = contact.m_time;
-    view.m_thickness = pairs.thickness(feature.m_slot, obstacle);
+    view.m_thickness = pairs.thickness(feature.m_meshSlot, obstacle);
     return view;
 }
 

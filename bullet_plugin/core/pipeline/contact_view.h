@@ -47,7 +47,7 @@ struct SelfContactView
     float m_time;             // time of impact in [0, 1]
 };
 
-// The cloth feature of a contact, which all contacts of one slot share.
+// The cloth feature of a contact, which all contacts of one feature index share.
 struct ClothFeature
 {
     MeshId m_cloth;

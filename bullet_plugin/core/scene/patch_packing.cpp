@@ -120,10 +120,10 @@ void PatchPacking::packVolumes(Device& device, ItemRange patches, const Obstacle
 {
     for (const LevelPlaces& changed : changedPlaces(m_layout, patches, m_levelsMoved, patchWidth(device)))
     {
-        const ItemRange places = changed.m_places;
+        const ItemRange entries = changed.m_entries;
         if (changed.m_level == 0)
         {
-            m_packVolumes.launch(device, places.count(), kGroup, packValues(obstacles, places, changed.m_children),
+            m_packVolumes.launch(device, entries.count(), kGroup, packValues(obstacles, entries, changed.m_children),
                                  obstacles.m_geometry, m_arena);
             continue;
         }
@@ -131,9 +131,9 @@ void PatchPacking::packVolumes(Device& device, ItemRange patches, const Obstacle
                                     m_layout.m_levels[changed.m_level - 1],
                                     cl_uint(changed.m_children),
                                     m_layout.m_levels[changed.m_level],
-                                    places.first(),
-                                    places.last()};
-        m_widen.launch(device, places.count() * DRAPE_WIDE_NODE_FLOATS, kGroup, values, m_arena);
+                                    entries.first(),
+                                    entries.last()};
+        m_widen.launch(device, entries.count() * DRAPE_WIDE_NODE_FLOATS, kGroup, values, m_arena);
     }
 }
 

@@ -167,11 +167,11 @@ void appendPatch(Patches& patches, const std::vector<Triangle>& triangles, const
         const std::size_t vertex = patches.m_vertexOwners.size() - std::size_t(patch.m_vertexBlock) * width;
         const std::size_t edge = patches.m_edgeOwners.size() - std::size_t(patch.m_edgeBlock) * width;
         patches.m_faceFeatures.push_back(owned | std::uint32_t(vertex) << 8 | std::uint32_t(edge) << 16);
-        for (std::uint32_t place = 0; place < 3; ++place)
+        for (std::uint32_t corner = 0; corner < 3; ++corner)
         {
-            const std::uint32_t feature = index | (place << DRAPE_PLACE_SHIFT);
-            if (owned & DRAPE_OWNS_VERTEX(place)) patches.m_vertexOwners.push_back(feature);
-            if (owned & DRAPE_OWNS_EDGE(place)) patches.m_edgeOwners.push_back(feature);
+            const std::uint32_t feature = index | (corner << DRAPE_CORNER_SHIFT);
+            if (owned & DRAPE_OWNS_VERTEX(corner)) patches.m_vertexOwners.push_back(feature);
+            if (owned & DRAPE_OWNS_EDGE(corner)) patches.m_edgeOwners.push_back(feature);
         }
     }
     padBlock(patches.m_faceOwners, width);
@@ -193,7 +193,7 @@ std::vector<std::uint32_t> idsOf(const std::vector<std::uint32_t>& owners, const
     for (std::uint32_t owner : owners)
         ids.push_back(owner == DRAPE_NO_FEATURE
                           ? DRAPE_NO_FEATURE
-                          : feature(triangles[owner & ((1u << DRAPE_PLACE_SHIFT) - 1u)], owner >> DRAPE_PLACE_SHIFT));
+                          : feature(triangles[owner & ((1u << DRAPE_CORNER_SHIFT) - 1u)], owner >> DRAPE_CORNER_SHIFT));
     return ids;
 }
 
@@ -312,13 +312,13 @@ void makeLevels(Patches& patches, std::uint32_t width)
 std::vector<std::uint32_t> vertexIdsOf(const std::vector<std::uint32_t>& owners, const std::vector<Triangle>& triangles)
 {
     return idsOf(owners, triangles,
-                 [](const Triangle& triangle, std::uint32_t place) { return triangle.m_vertices[place]; });
+                 [](const Triangle& triangle, std::uint32_t corner) { return triangle.m_vertices[corner]; });
 }
 
 std::vector<std::uint32_t> edgeIdsOf(const std::vector<std::uint32_t>& owners, const std::vector<Triangle>& triangles)
 {
     return idsOf(owners, triangles,
-                 [](const Triangle& triangle, std::uint32_t place) { return triangle.m_edges[place]; });
+                 [](const Triangle& triangle, std::uint32_t corner) { return triangle.m_edges[corner]; });
 }
 
 std::vector<std::uint32_t> faceNodesOf(const std::vector<std::uint32_t>& ids, const std::vector<Triangle>& triangles,

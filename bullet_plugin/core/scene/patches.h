@@ -61,7 +61,7 @@ PatchLanes lanesOf(const Patches& patches, ItemRange range, std::uint32_t width)
 struct LevelPlaces
 {
     std::size_t m_level, m_children;
-    ItemRange m_places;
+    ItemRange m_entries;
 };
 // Returns the nodes to rebuild, lowest level first, after the patches `range` changed; all of the upper levels if
 // levels have moved. A range that includes the last child includes the empty positions behind it.

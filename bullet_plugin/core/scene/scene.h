@@ -52,12 +52,13 @@ struct Scene
     // Releases memory that only earlier, larger scenes needed. The joined arrays move.
     void giveBackRoom();
 
-    std::size_t slotCount() const
+    // Counts the nodes, faces and edges of all cloths.
+    std::size_t featureCount() const
     {
         return m_cloths.vertexCount() + m_cloths.triangles().size() + m_cloths.edges().size();
     }
-    // Counts the slots, and as many behind them for contacts of cloths with themselves if there can be any.
-    std::size_t allSlotCount() const { return m_anySelf ? 2 * slotCount() : slotCount(); }
+    // Counts the feature indices of contacts: twice as many if cloths may have contacts with themselves.
+    std::size_t allFeatureCount() const { return m_anySelf ? 2 * featureCount() : featureCount(); }
 
 private:
     PooledMesh makeMesh(const MeshDescription& description);

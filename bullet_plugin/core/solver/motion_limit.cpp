@@ -54,7 +54,7 @@ MotionLimit::Allowance MotionLimit::allowance(const Region& region, std::size_t 
     return Allowance{own.m_start, m_hasContact[node] ? own.m_start : own.m_end};
 }
 
-bool MotionLimit::strayed(const SolverNodes& nodes)
+bool MotionLimit::anyOffPath(const SolverNodes& nodes)
 {
     const float most = kFreeShare * m_leastReach;
     m_farNodes.clear();

@@ -50,7 +50,7 @@ public:
     // Returns whether the cloth may have passed a surface without a contact. This is so if a node, limited or not,
     // ended more than kFreeShare of the reach from its path's end, and the node or one of its faces came near an
     // obstacle on the way.
-    bool strayed(const SolverNodes& nodes);
+    bool anyOffPath(const SolverNodes& nodes);
     // Brings nodes that left their path too far back to the nearest point of the allowed region.
     void apply(SolverNodes& nodes);
     // Does the same as apply() for nodes without contacts alone.

@@ -56,9 +56,9 @@ bool PackedTopology::pack(const std::vector<SolverCloth>& cloths, const MeshPool
     for (std::vector<std::uint32_t>* list :
          {&m_levelGroups, &m_faceLists, &m_facesOfNode, &m_faces, &m_places, &m_bucketCloths})
         list->clear();
-    const std::size_t slots =
+    const std::size_t features =
         meshes ? meshes->vertexCount() + meshes->triangles().size() + meshes->edges().size() : std::size_t(0);
-    m_slots.assign(slots, SolveSlot{DRAPE_NO_BUCKET, {DRAPE_NO_NODE, DRAPE_NO_NODE, DRAPE_NO_NODE}});
+    m_features.assign(features, SolveFeature{DRAPE_NO_BUCKET, {DRAPE_NO_NODE, DRAPE_NO_NODE, DRAPE_NO_NODE}});
     for (const SolverCloth& cloth : cloths)
         packCloth(cloth, meshes);
     listGroups(cloths);
@@ -167,17 +167,17 @@ void PackedTopology::packFeatures(const ClothContacts& contacts, const MeshPool&
     {
         const OrderedFeature& feature = order.features()[i];
         const SolveGroup& group = m_groups[firstGroup + feature.m_group - 1];
-        SolveSlot slot = {group.m_firstBucket + feature.m_colour, {DRAPE_NO_NODE, DRAPE_NO_NODE, DRAPE_NO_NODE}};
-        if (feature.m_kind != kNodeFeature) slot.m_bucket += group.m_nodeBuckets;
-        if (feature.m_kind == kEdgeFeature) slot.m_bucket += group.m_faceBuckets;
+        SolveFeature packed = {group.m_firstBucket + feature.m_colour, {DRAPE_NO_NODE, DRAPE_NO_NODE, DRAPE_NO_NODE}};
+        if (feature.m_kind != kNodeFeature) packed.m_bucket += group.m_nodeBuckets;
+        if (feature.m_kind == kEdgeFeature) packed.m_bucket += group.m_faceBuckets;
         for (int k = 0; k < 3 && feature.m_nodes[k] >= 0; ++k)
-            slot.m_nodes[k] = placeOf[std::size_t(feature.m_nodes[k])];
+            packed.m_nodes[k] = placeOf[std::size_t(feature.m_nodes[k])];
         std::size_t place = first.m_vertex + i;
         if (i >= order.firstEdge())
             place = meshes.vertexCount() + meshes.triangles().size() + first.m_edge + (i - order.firstEdge());
         else if (i >= order.firstTriangle())
             place = meshes.vertexCount() + first.m_triangle + (i - order.firstTriangle());
-        m_slots[place] = slot;
+        m_features[place] = packed;
     }
 }
 
@@ -240,7 +240,7 @@ void PackedTopology::layOut()
     layout.m_facesOfNode = places.add<std::uint32_t>(m_facesOfNode.size());
     layout.m_faces = places.add<std::uint32_t>(m_faces.size());
     layout.m_places = places.add<std::uint32_t>(m_places.size());
-    layout.m_slots = places.add<SolveSlot>(m_slots.size());
+    layout.m_features = places.add<SolveFeature>(m_features.size());
     layout.m_bucketCloths = places.add<std::uint32_t>(m_bucketCloths.size());
     m_words.assign(places.words(), SolveTopologyWord());
     const auto copy = [this](std::uint32_t place, const auto& list)
@@ -253,7 +253,7 @@ void PackedTopology::layOut()
     copy(layout.m_facesOfNode, m_facesOfNode);
     copy(layout.m_faces, m_faces);
     copy(layout.m_places, m_places);
-    copy(layout.m_slots, m_slots);
+    copy(layout.m_features, m_features);
     copy(layout.m_bucketCloths, m_bucketCloths);
 }
 }  // namespace drape

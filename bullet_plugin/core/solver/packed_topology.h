@@ -77,7 +77,7 @@ private:
     std::vector<SolveBatch> m_linkBatches;
     std::vector<SolveGroup> m_groups;
     std::vector<std::uint32_t> m_levelGroups, m_faceLists, m_facesOfNode, m_faces, m_places, m_bucketCloths;
-    std::vector<SolveSlot> m_slots;
+    std::vector<SolveFeature> m_features;
     std::vector<SolveTopologyWord> m_words;
     SolveLayout m_layout = {};
     SolveRange m_small = {}, m_whole = {};

@@ -56,7 +56,7 @@ private:
     void leaveToBullet();
     void detect();
     void solveBodies(StepParts& times);
-    void closeStrayed(const std::vector<BodyContacts*>& bodies);
+    void closeOffPath(const std::vector<BodyContacts*>& bodies);
     void solveStep();
     void endFailedStep();
 

@@ -4,8 +4,8 @@
 // a pair that is farther apart than the reach, and than volumes contain. The volumes would then decide whether there
 // is a contact. The tests here are proofs, too, and are the same as those of any traversal's volumes: every
 // traversal's volumes contain the pairs that remain.
-#ifndef DRAPE_LIB_WAYS_H
-#define DRAPE_LIB_WAYS_H
+#ifndef DRAPE_LIB_PATHS_H
+#define DRAPE_LIB_PATHS_H
 
 #include "dop.h"
 #include "feature_contact.h"
@@ -14,13 +14,13 @@ DRAPE_NAMESPACE_BEGIN
 
 // Share of the reach by which paths of features that met may be apart. Volumes contain more than this in any
 // direction (DRAPE_CULL_MET of feature_cull.h).
-#define DRAPE_WAY_REACH 0.01f
+#define DRAPE_PATH_REACH 0.01f
 // Rounding error of distances, as a share of a pair's extent.
-#define DRAPE_WAY_ROUNDING 3e-6f
+#define DRAPE_PATH_ROUNDING 3e-6f
 
 // Returns whether the paths of two features, of the first `count` points and of the others, are not proved farther
 // apart than the distance, m.
-DRAPE_FUNCTION int waysOverlap(const Vec3 start[4], const Vec3 end[4], int count, float distance)
+DRAPE_FUNCTION int pathsOverlap(const Vec3 start[4], const Vec3 end[4], int count, float distance)
 {
     int overlap = 1;
     for (int i = 0; i < DRAPE_DOP_DIRECTIONS && overlap; ++i)
@@ -41,8 +41,8 @@ DRAPE_FUNCTION int waysOverlap(const Vec3 start[4], const Vec3 end[4], int count
 // Returns whether features with this computed distance, m, are farther apart than the reach after all.
 DRAPE_FUNCTION int outOfReach(float distance, const Vec3 points[4], int count, PairBounds bounds)
 {
-    return distance > bounds.m_reach - DRAPE_WAY_ROUNDING * bounds.m_extent &&
-           !waysOverlap(points, points, count, bounds.m_reach);
+    return distance > bounds.m_reach - DRAPE_PATH_ROUNDING * bounds.m_extent &&
+           !pathsOverlap(points, points, count, bounds.m_reach);
 }
 
 DRAPE_FUNCTION int pointIsOutOfReach(float distance, Vec3 point, FeatureTriangle face, PairBounds bounds)
