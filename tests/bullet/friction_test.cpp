@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "scenes/shapes.h"
 #include "tests/bullet/drop_world.h"
@@ -113,6 +114,57 @@ TEST_P(Friction, SlidesAboveTheAngle)
         EXPECT_NEAR(slope.farthest(before, true), way, 0.05 * way) << "springs " << springs;
         EXPECT_NEAR(slope.farthest(before, false), way, 0.05 * way) << "springs " << springs;
     }
+}
+
+namespace
+{
+constexpr double kInclineFriction = 0.4;
+
+// Returns how far (m) the nodes of a cloth of 33 x 33 slide down an inclined mesh in 600 steps, or in 60 above the
+// friction angle: the least and the most. share: of the friction angle. The cloth starts at rest on the mesh.
+std::pair<double, double> slideOnIncline(const Settings& settings, double share)
+{
+    Plugin plugin(settings);
+    DropWorld world(&plugin);
+    MeshShape shape(makeBox(12.0f, 0.4f, 6.0f));
+    ClothSpec spec;
+    spec.m_nodes = 33;
+    spec.m_damping = 0;
+    spec.m_centre = btVector3(btScalar(-4), btScalar(0.2 + kThickness), 0);
+    btSoftBody& cloth = world.addCloth(spec);
+    cloth.m_cfg.kDF = btScalar(kInclineFriction);
+    const double angle = share * std::atan(kInclineFriction);
+    const btTransform turn(btQuaternion(btVector3(0, 0, 1), btScalar(-angle)));
+    world.addObstacle(shape.shape(), turn);
+    cloth.transform(turn);
+    const std::vector<float> before = positionsOf(cloth);
+    world.step(share < 1 ? 600 : 60);
+    const std::vector<float> after = positionsOf(cloth);
+    double least = 1e9, most = -1e9;
+    for (std::size_t i = 0; i < before.size(); i += 3)
+    {
+        const double way = (static_cast<double>(after[i]) - static_cast<double>(before[i])) / std::cos(angle);
+        least = std::min(least, way);
+        most = std::max(most, way);
+    }
+    return {least, most};
+}
+}  // namespace
+
+TEST(Incline, ClothHoldsStillBelowTheAngle)
+{
+    const auto [least, most] = slideOnIncline(hostSettings(), 0.95);
+    EXPECT_GT(least, -1e-4);
+    EXPECT_LT(most, 1e-4);
+}
+
+TEST(Incline, ClothSlidesLikeABlockAboveTheAngle)
+{
+    const double friction = kInclineFriction, angle = 1.2 * std::atan(friction), time = 60 * static_cast<double>(kDt);
+    const double way = 0.5 * kGravity * (std::sin(angle) - friction * std::cos(angle)) * time * time;
+    const auto [least, most] = slideOnIncline(hostSettings(), 1.2);
+    EXPECT_NEAR(least, way, 0.05 * way);
+    EXPECT_NEAR(most, way, 0.05 * way);
 }
 
 INSTANTIATE_TEST_SUITE_P(Backend, Friction, testing::ValuesIn(allBackends()), backendName);
