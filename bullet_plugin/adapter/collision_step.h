@@ -71,10 +71,8 @@ private:
     Pair makePair(const PairNote& note, const ClothMirror& cloth, MeshId obstacle);
     void checkStarts();
     void preparePushes(BodyContacts& body);
-    void addContacts(BodyContacts& body, const Contact* first, std::uint32_t count,
-                     const OrderedFeature& ordered);
-    void addHeldContacts(BodyContacts& body, const Contact* first, std::uint32_t count,
-                     const OrderedFeature& ordered);
+    void addContacts(BodyContacts& body, const Contact* first, std::uint32_t count, const OrderedFeature& ordered);
+    void addHeldContacts(BodyContacts& body, const Contact* first, std::uint32_t count, const OrderedFeature& ordered);
     void addPushes(BodyContacts& body);
     void markUnguarded();
     void leaveOut(std::size_t index);

@@ -94,19 +94,18 @@ void ClothMirror::cutParts()
 MeshId ClothMirror::refresh(Pipeline& pipeline)
 {
     const std::vector<std::int32_t>& triangles = m_faces.triangles();
-    if (!topologyChanged() && (m_id != kNoMesh || triangles.empty()))
+    if (topologyChanged() || (m_id == kNoMesh && !triangles.empty()))
     {
-        if (!m_takenUp) return m_id;
-        cutParts();
-        if (m_id != kNoMesh) m_order.build(m_parts, pipeline.cloths().existing(m_id).m_topology);
-        return m_id;
+        if (m_id != kNoMesh) pipeline.remove(m_id);
+        m_id = kNoMesh;
+        readTopology();
+        if (!triangles.empty() && m_faces.nodeCount() > 0) m_id = addCopy(pipeline);
     }
-    if (m_id != kNoMesh) pipeline.remove(m_id);
-    m_id = kNoMesh;
-    readTopology();
-    if (triangles.empty() || m_faces.nodeCount() == 0) return m_id;
-    m_id = addCopy(pipeline);
-    m_order.build(m_parts, pipeline.cloths().existing(m_id).m_topology);
+    else if (m_takenUp)
+        cutParts();
+    // Also after a step in which memory ran out before the order was built.
+    if (m_id != kNoMesh && m_order.partsRevision() != m_parts.revision())
+        m_order.build(m_parts, pipeline.cloths().existing(m_id).m_topology);
     return m_id;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <utility>
 
 #include "bullet_plugin/adapter/body_jobs.h"
 #include "bullet_plugin/adapter/body_nodes.h"
@@ -74,10 +75,11 @@ void SubstepBody::reserve(const btSoftBody& body)
 {
     m_isPredicted = false;
     const std::size_t count = body.isActive() ? nodeCount(body) : 0;
-    m_velocities.resize(count);
+    if (m_velocities.size() != count) m_velocities.clear();
     if (count == 0) return;
     m_accelerations.resize(count);
     m_predictions.resize(count);
+    m_velocities.resize(count);  // last: where it has its size, the others have theirs
 }
 
 void SubstepBody::beforePrediction(const btSoftBody& body, ThreadTeam* threads)
@@ -228,7 +230,8 @@ void SubstepBody::begin(const btSoftBody& body, ClothContacts* recorded, ThreadT
     if (recorded && recorded->m_parts->revision() != m_parts.revision())
     {
         const bool isNew = std::max(recorded->m_parts->leafCount(), m_parts.leafCount()) > 1;
-        m_parts = *recorded->m_parts;
+        ClothParts parts = *recorded->m_parts;
+        m_parts = std::move(parts);  // as a whole, if memory suffices
         if (isNew)
         {
             sortLinks();

@@ -224,7 +224,8 @@ DRAPE_HOT_FUNCTION Vec3 rowWay(const ActingContact* acting, const uint count, co
 }
 
 // Loads the row of a contact. Its pushes begin anew in each stage.
-DRAPE_HOT_FUNCTION ActingContact loadRow(const Solve* solve, const uint index, const SolveContact* contact, const uint stage)
+DRAPE_HOT_FUNCTION ActingContact loadRow(const Solve* solve, const uint index, const SolveContact* contact,
+                                         const uint stage)
 {
     ActingContact acting = loadActing(solve, index);
     if (contact->m_pushing != stage)
@@ -236,7 +237,8 @@ DRAPE_HOT_FUNCTION ActingContact loadRow(const Solve* solve, const uint index, c
 }
 
 // Makes the row of a contact if it has none, and loads it.
-DRAPE_HOT_FUNCTION ActingContact openRow(const Solve* solve, const uint index, const SolveContact* contact, const uint stage)
+DRAPE_HOT_FUNCTION ActingContact openRow(const Solve* solve, const uint index, const SolveContact* contact,
+                                         const uint stage)
 {
     if (!(contact->m_flags & DRAPE_CONTACT_MADE))
     {
@@ -248,8 +250,8 @@ DRAPE_HOT_FUNCTION ActingContact openRow(const Solve* solve, const uint index, c
 }
 
 // Pushes the nodes of a contact with an open row. Returns whether there was anything to do.
-DRAPE_HOT_FUNCTION int pushContact(const Solve* solve, const uint index, const SolveContact* contact, ActingContact* acting,
-                       Sweep* sweep)
+DRAPE_HOT_FUNCTION int pushContact(const Solve* solve, const uint index, const SolveContact* contact,
+                                   ActingContact* acting, Sweep* sweep)
 {
     const uint count = DRAPE_CONTACT_COUNT(contact->m_flags);
     const Displacements at = displacementsOf(solve, contact);
@@ -271,8 +273,8 @@ DRAPE_HOT_FUNCTION int pushContact(const Solve* solve, const uint index, const S
 }
 
 // Projects a contact that is violated or pushes, with an open row. Returns whether it pushed.
-DRAPE_HOT_FUNCTION int projectContact(const Solve* solve, const uint index, const SolveContact* contact, ActingContact* acting,
-                          Sweep* sweep)
+DRAPE_HOT_FUNCTION int projectContact(const Solve* solve, const uint index, const SolveContact* contact,
+                                      ActingContact* acting, Sweep* sweep)
 {
     if (!(acting->m_row.m_inverseMobility > 0.0f)) return 0;
     if ((contact->m_flags & DRAPE_CONTACT_TURNS) && acting->m_stage != sweep->m_stage)
@@ -402,7 +404,8 @@ DRAPE_HOT_FUNCTION void actSideBySide(const Solve* solve, const uint index, cons
 }
 
 // Visits contacts one after the other: all, or those that act in this stage.
-DRAPE_HOT_FUNCTION uint visitInOrder(const Solve* solve, const uint first, const uint last, Sweep* sweep, const int acts)
+DRAPE_HOT_FUNCTION uint visitInOrder(const Solve* solve, const uint first, const uint last, Sweep* sweep,
+                                     const int acts)
 {
     uint pushed = 0;
     for (uint i = first; i < last; ++i)
@@ -410,8 +413,8 @@ DRAPE_HOT_FUNCTION uint visitInOrder(const Solve* solve, const uint first, const
         const SolveContact contact = loadContact(solve, i);
         if (acts ? contact.m_pushing != sweep->m_stage : !isDue(solve, &contact, sweep)) continue;
         ActingContact acting = openRow(solve, i, &contact, sweep->m_stage);
-        pushed |= acts ? pushContact(solve, i, &contact, &acting, sweep)
-                       : projectContact(solve, i, &contact, &acting, sweep);
+        pushed |=
+            acts ? pushContact(solve, i, &contact, &acting, sweep) : projectContact(solve, i, &contact, &acting, sweep);
     }
     return pushed;
 }
@@ -455,7 +458,8 @@ DRAPE_HOT_FUNCTION void sweepBucket(const Solve* solve, const uint index, Sweep*
         atomic_max(solve->m_shared + DRAPE_SHARED_PUSHED + index, record);
 }
 
-// Returns the next bucket, from `index` on, in which contacts act in this stage; the number of buckets if there is none.
+// Returns the next bucket, from `index` on, in which contacts act in this stage; the number of buckets if there is
+// none.
 DRAPE_HOT_FUNCTION uint nextActing(const Solve* solve, uint index, const uint count, const uint stage)
 {
     while (index < count && solve->m_shared[DRAPE_SHARED_PUSHED + index] >> 16 != stage)
@@ -536,8 +540,8 @@ DRAPE_RARE_FUNCTION int limitSpeeds(const Solve* solve, const int edges)
     for (uint b = first; b < first + count; ++b)
     {
         const SolveBucket bucket = solve->m_buckets[b];
-        forAll(i, bucket.m_first, bucket.m_first + bucket.m_count)
-            if (solve->m_sorted[i].m_rank == 0) near |= limitFeature(solve, i, bucket.m_first + bucket.m_count);
+        forAll(i, bucket.m_first, bucket.m_first + bucket.m_count) if (solve->m_sorted[i].m_rank == 0) near |=
+            limitFeature(solve, i, bucket.m_first + bucket.m_count);
         syncAll();
     }
     return near;

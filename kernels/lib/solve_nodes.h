@@ -34,9 +34,8 @@ static void endNodes(const Solve* solve, const SolveRange nodes)
 static void settleNodes(const Solve* solve, const SolveRange nodes)
 {
     if (!solve->m_cloth->m_rests || solve->m_progress->m_blocks == 0) return;
-    forAll(i, nodes.m_first, nodes.m_first + nodes.m_count)
-        if (solve->m_paths[i].m_inverseMass > 0.0f)
-            nodeSettle(nodeAt(solve, i), solve->m_states + i, solve->m_accelerations[i], solve->m_cloth->m_perStep);
+    forAll(i, nodes.m_first, nodes.m_first + nodes.m_count) if (solve->m_paths[i].m_inverseMass > 0.0f)
+        nodeSettle(nodeAt(solve, i), solve->m_states + i, solve->m_accelerations[i], solve->m_cloth->m_perStep);
 }
 
 static void rememberNodes(const Solve* solve, const SolveRange nodes)
@@ -46,9 +45,8 @@ static void rememberNodes(const Solve* solve, const SolveRange nodes)
 
 static void boundShifts(const Solve* solve, const SolveRange nodes)
 {
-    forAll(i, nodes.m_first, nodes.m_first + nodes.m_count)
-        nodeLimitShift(nodeAt(solve, i), solve->m_states + i, solve->m_cloth->m_perCorrection,
-                       solve->m_cloth->m_perSecond);
+    forAll(i, nodes.m_first, nodes.m_first + nodes.m_count) nodeLimitShift(
+        nodeAt(solve, i), solve->m_states + i, solve->m_cloth->m_perCorrection, solve->m_cloth->m_perSecond);
 }
 
 static void addShifts(const Solve* solve, const SolveRange nodes)

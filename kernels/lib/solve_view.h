@@ -7,9 +7,14 @@
 #include "../shared/solve_step.h"
 #include "vec3.h"
 
-// Functions that sweeps run through are inlined, so that the view stays in registers: a function that is not gets a copy,
-// in a memory of the work-item's own, where every access waits.
+// Functions that sweeps run through are inlined, so that the view stays in registers: a function that is not gets a
+// copy, in a memory of the work-item's own, where every access waits.
+// NVIDIA's compiler needs to be told; others inline by themselves, and Oclgrind cannot run what that makes.
+#ifdef __NV_CL_C_VERSION
 #define DRAPE_HOT_FUNCTION static __attribute__((always_inline))
+#else
+#define DRAPE_HOT_FUNCTION static
+#endif
 
 // m_nodes, m_marks: of the nodes from m_base on, counted from the cloth's first node. m_marks: see nextRound().
 typedef struct Solve
@@ -42,9 +47,9 @@ typedef struct Solve
     __global SolveSpan* m_spans;
 } Solve;
 
-// Words of local memory that a group shares: one for sums, three for rounds, then by bucket of the group a record of its
-// pushes, the place of its first contact and the end of its last one. A group has a bucket for its nodes and two for
-// each of 63 colours at most.
+// Words of local memory that a group shares: one for sums, three for rounds, then three lists by bucket of the group.
+// They hold a record of its pushes, the place of its first contact, and the end of its last one. A group has a bucket
+// for its nodes and two for each of 63 colours at most.
 #define DRAPE_SHARED_PENDING 1
 #define DRAPE_SHARED_PUSHED 4
 #define DRAPE_MOST_BUCKETS 127
@@ -140,8 +145,8 @@ DRAPE_HOT_FUNCTION uint bucketsOf(const Solve* solve)
 
 // Sets all but the nodes and the group.
 DRAPE_HOT_FUNCTION void openCloth(Solve* solve, const SolveLayout* layout, __global const SolveInputWord* input,
-                      __global const SolveTopologyWord* topology, __global const Contact* contacts,
-                      __global SolveWorkWord* work, const uint index)
+                                  __global const SolveTopologyWord* topology, __global const Contact* contacts,
+                                  __global SolveWorkWord* work, const uint index)
 {
     __global const SolveCloth* cloth = (__global const SolveCloth*)(input + layout->m_cloths) + index;
     const uint firstNode = cloth->m_nodes.m_first;

@@ -47,8 +47,8 @@ typedef struct SolveRange
 typedef struct SolveCloth
 {
     SolveRange m_nodes;
-    SolveRange m_surfaces;  // of obstacles, by rising slot
-    SolveRange m_regions;   // obstacles that limit the motion
+    SolveRange m_surfaces;   // by rising slot of the obstacle
+    SolveRange m_regions;    // obstacles that limit the motion
     DRAPE_UINT m_faceLists;  // position of the nodes' lists of faces, see SolveLayout
     DRAPE_UINT m_substeps;
     DRAPE_UINT m_linkSweeps;    // in each substep, each with a sweep over the contacts
@@ -80,7 +80,7 @@ typedef struct SolveCloth
 typedef struct SolveGroup
 {
     DRAPE_UINT m_cloth;
-    SolveRange m_nodes;  // of a leaf; none otherwise
+    SolveRange m_nodes;  // a leaf has some
     SolveRange m_linkBatches;
     DRAPE_UINT m_firstBucket;
     DRAPE_UINT m_nodeBuckets, m_faceBuckets, m_edgeBuckets;  // their numbers
@@ -93,7 +93,7 @@ typedef struct SolveBatch
     DRAPE_UINT m_serial;  // they may share nodes: one after the other
 } SolveBatch;
 
-// Where the contacts of a cloth feature belong.
+// The bucket of the contacts of a cloth feature, and its nodes.
 typedef struct SolveFeature
 {
     DRAPE_UINT m_bucket;    // DRAPE_NO_BUCKET: in no cloth of the step
@@ -146,10 +146,10 @@ typedef struct SolveSpan
 typedef struct SolveContact
 {
     Vec3 m_normal;
-    float m_level;         // m, with the margin for rounding
-    float m_weights[2];    // second and third node
-    DRAPE_UINT m_flags;    // DRAPE_CONTACT_MADE ...
-    DRAPE_UINT m_pushing;  // the stage in which the row pushed last
+    float m_level;          // m, with the margin for rounding
+    float m_weights[2];     // second and third node
+    DRAPE_UINT m_flags;     // DRAPE_CONTACT_MADE ...
+    DRAPE_UINT m_pushing;   // the stage in which the row pushed last
     DRAPE_UINT m_nodes[3];  // the first one again where unused
     DRAPE_UINT m_rank;      // among the contacts of its feature; above bit 16 among those that act
 } SolveContact;
@@ -174,11 +174,11 @@ typedef struct SolveAllowance
 // Working memory of a cloth.
 typedef struct SolveProgress
 {
-    DRAPE_UINT m_blocks;    // blocks of contacts as the host counts them, see mostClosingSweeps()
-    DRAPE_UINT m_far;       // the last pass in which a node was far from its path's end
-    DRAPE_UINT m_ended;     // the round in which the step ended; 0: it has not
-    DRAPE_UINT m_isNear;    // true if a contact ends so near that a surface may have been passed
-    DRAPE_UINT m_refused;   // true if a feature has too many contacts
+    DRAPE_UINT m_blocks;   // blocks of contacts as the host counts them, see mostClosingSweeps()
+    DRAPE_UINT m_far;      // the last pass in which a node was far from its path's end
+    DRAPE_UINT m_ended;    // the round in which the step ended; 0: it has not
+    DRAPE_UINT m_isNear;   // true if a contact ends so near that a surface may have been passed
+    DRAPE_UINT m_refused;  // true if a feature has too many contacts
     DRAPE_UINT m_unused[3];
     float m_worst[DRAPE_CLOSING_SWEEPS + 4];  // m, by closing sweep
 } SolveProgress;
@@ -202,25 +202,25 @@ typedef struct SolveLayout
     DRAPE_UINT m_nodes, m_states, m_results;
     DRAPE_UINT m_buckets, m_progress, m_allowances, m_total;
     DRAPE_UINT m_paths, m_accelerations, m_sorted, m_order, m_acting, m_spans, m_marks;
-    // In the topology: the links; by node, the position of its faces, then the last one's end; the faces of the nodes;
-    // three nodes for each face; by node, its place in the caller's order; by bucket, its cloth.
-    DRAPE_UINT m_links, m_linkBatches, m_groups, m_levelGroups, m_faceLists, m_facesOfNode, m_faces, m_places, m_features,
-        m_bucketCloths;
+    // In the topology. m_faceLists: by node, the position of its faces; then the last one's end. m_faces: three nodes
+    // each. m_places: by node, its place in the caller's order.
+    DRAPE_UINT m_links, m_linkBatches, m_groups, m_levelGroups, m_faceLists, m_facesOfNode, m_faces, m_places,
+        m_features, m_bucketCloths;
 } SolveLayout;
 
 // Passes of a step over the groups of a level, or over leaves.
-#define DRAPE_PASS_BEGIN 0u       // all groups: nodes at the paths' starts, links apart
-#define DRAPE_PASS_ADVANCE 1u     // leaves: ends a substep and begins the next one
-#define DRAPE_PASS_LIMIT 2u       // leaves: how far nodes may leave their paths beside resting obstacles
-#define DRAPE_PASS_BRING_BACK 3u  // leaves: brings these nodes back
-#define DRAPE_PASS_NEAR 4u        // leaves: nodes near a moving obstacle
-#define DRAPE_PASS_CARRY_BACK 5u  // leaves: brings these nodes back
-#define DRAPE_PASS_LINKS 6u       // a level
-#define DRAPE_PASS_FACES 7u       // a level: contacts of nodes and faces
-#define DRAPE_PASS_EDGES 8u       // a level: contacts of edges, then those that act
-#define DRAPE_PASS_FAR 9u         // leaves: finds nodes far from their paths' ends
-#define DRAPE_PASS_NODES 10u      // a level: contacts of nodes alone
-#define DRAPE_PASS_END 11u        // leaves: velocities of the closing shifts
+#define DRAPE_PASS_BEGIN 0u         // all groups: nodes at the paths' starts, links apart
+#define DRAPE_PASS_ADVANCE 1u       // leaves: ends a substep and begins the next one
+#define DRAPE_PASS_LIMIT 2u         // leaves: how far nodes may leave their paths beside resting obstacles
+#define DRAPE_PASS_BRING_BACK 3u    // leaves: brings these nodes back
+#define DRAPE_PASS_NEAR 4u          // leaves: nodes near a moving obstacle
+#define DRAPE_PASS_CARRY_BACK 5u    // leaves: brings these nodes back
+#define DRAPE_PASS_LINKS 6u         // a level
+#define DRAPE_PASS_FACES 7u         // a level: contacts of nodes and faces
+#define DRAPE_PASS_EDGES 8u         // a level: contacts of edges, then those that act
+#define DRAPE_PASS_FAR 9u           // leaves: finds nodes far from their paths' ends
+#define DRAPE_PASS_NODES 10u        // a level: contacts of nodes alone
+#define DRAPE_PASS_END 11u          // leaves: velocities of the closing shifts
 #define DRAPE_PASS_SPEEDS 12u       // a level: nodes and faces limit speeds
 #define DRAPE_PASS_EDGE_SPEEDS 13u  // a level
 #define DRAPE_PASS_RESULT 14u       // leaves
@@ -232,8 +232,8 @@ typedef struct SolvePass
     DRAPE_UINT m_firstGroup;  // in the list of groups by level
     DRAPE_UINT m_substep;     // DRAPE_CLOSING: after the last one
     DRAPE_UINT m_sweep;       // closing sweep
-    DRAPE_UINT m_region;      // of a moving obstacle, counted from the cloth's first
-    DRAPE_UINT m_round;       // of passes that end the step, counted from 1
+    DRAPE_UINT m_region;      // a moving obstacle's, counted from the cloth's first
+    DRAPE_UINT m_round;       // counts from 1 for passes that end the step
 } SolvePass;
 #define DRAPE_CLOSING 0xffffffffu
 

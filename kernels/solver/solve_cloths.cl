@@ -12,9 +12,9 @@
 
 // Opens the group of the work-group's number in the list of groups by level.
 DRAPE_HOT_FUNCTION void openLeaf(Solve* solve, const SolveLayout* layout, __global const SolveInputWord* input,
-                     __global const SolveTopologyWord* topology, __global const Contact* contacts,
-                     __global SolveWorkWord* work, const SolvePass* pass, __local SolverNode* nodes,
-                     __local uint* marks, __local uint* shared)
+                                 __global const SolveTopologyWord* topology, __global const Contact* contacts,
+                                 __global SolveWorkWord* work, const SolvePass* pass, __local SolverNode* nodes,
+                                 __local uint* marks, __local uint* shared)
 {
     __global const uint* list = (__global const uint*)(topology + layout->m_levelGroups) + pass->m_firstGroup;
     solve->m_group = (__global const SolveGroup*)(topology + layout->m_groups) + list[get_group_id(0)];
@@ -167,15 +167,13 @@ DRAPE_HOT_FUNCTION void solveCloth(const Solve* solve, __global SolverNode* ends
 DRAPE_HOT_FUNCTION void loadLeaf(const Solve* solve, __global const SolverNode* from)
 {
     const SolveRange nodes = solve->m_group->m_nodes;
-    forAll(i, 0, nodes.m_count)
-        ((__local float4*)solve->m_nodes)[i] = ((__global const float4*)from)[nodes.m_first + i];
+    forAll(i, 0, nodes.m_count)((__local float4*)solve->m_nodes)[i] = ((__global const float4*)from)[nodes.m_first + i];
 }
 
 DRAPE_HOT_FUNCTION void storeLeaf(const Solve* solve, __global SolverNode* to)
 {
     const SolveRange nodes = solve->m_group->m_nodes;
-    forAll(i, 0, nodes.m_count)
-        ((__global float4*)to)[nodes.m_first + i] = ((__local const float4*)solve->m_nodes)[i];
+    forAll(i, 0, nodes.m_count)((__global float4*)to)[nodes.m_first + i] = ((__local const float4*)solve->m_nodes)[i];
 }
 
 // Runs one pass over a leaf.

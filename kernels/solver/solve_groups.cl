@@ -10,8 +10,8 @@
 
 // Opens the group of the work-group's number in the list of groups by level.
 DRAPE_HOT_FUNCTION void openGroup(Solve* solve, const SolveLayout* layout, __global const SolveInputWord* input,
-                      __global const SolveTopologyWord* topology, __global const Contact* contacts,
-                      __global SolveWorkWord* work, const SolvePass* pass, __local uint* shared)
+                                  __global const SolveTopologyWord* topology, __global const Contact* contacts,
+                                  __global SolveWorkWord* work, const SolvePass* pass, __local uint* shared)
 {
     __global const uint* list = (__global const uint*)(topology + layout->m_levelGroups) + pass->m_firstGroup;
     solve->m_group = (__global const SolveGroup*)(topology + layout->m_groups) + list[get_group_id(0)];
@@ -146,8 +146,7 @@ __kernel __attribute__((reqd_work_group_size(DRAPE_GROUP_SIZE(DRAPE_SOLVE_GROUP)
             return;
         case DRAPE_PASS_RESULT:
             if (get_local_id(0) == 0)
-                writeResult(&solve, &pass,
-                            (__global SolveResult*)(work + layout.m_results) + solve.m_group->m_cloth);
+                writeResult(&solve, &pass, (__global SolveResult*)(work + layout.m_results) + solve.m_group->m_cloth);
             return;
         default:
             return limitNodes(&solve, &pass);

@@ -41,13 +41,15 @@ PlainSweep::PlainSweep(const ClothContacts& cloth, const ContactSource& source, 
 }
 
 // Sorts the contacts by group, children first, then by kind and colour. Each feature of the cloth has the least colour
-// that no earlier feature of the same group and kind has at one of its nodes.
+// that no later feature of the same group and kind has at one of its nodes.
 void PlainSweep::sortRows(const ClothContacts& cloth)
 {
     std::map<std::pair<std::size_t, std::uint32_t>, std::map<int, std::set<int>>> taken;
-    std::vector<int> colours;
-    for (const OrderedFeature& feature : cloth.m_order->features())
+    const std::vector<OrderedFeature>& features = cloth.m_order->features();
+    std::vector<int> colours(features.size());
+    for (std::size_t i = features.size(); i-- > 0;)
     {
+        const OrderedFeature& feature = features[i];
         auto& nodes = taken[{cloth.m_parts->groupOf(feature.m_nodes), feature.m_kind}];
         int colour = 0;
         const auto isTaken = [&](int node) { return node >= 0 && nodes[node].count(colour) > 0; };
@@ -55,7 +57,7 @@ void PlainSweep::sortRows(const ClothContacts& cloth)
             ++colour;
         for (const int node : feature.m_nodes)
             nodes[node].insert(colour);
-        colours.push_back(colour);
+        colours[i] = colour;
     }
     for (Row& row : m_rows)
     {

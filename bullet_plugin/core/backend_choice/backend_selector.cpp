@@ -17,8 +17,8 @@ namespace
 {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// Minimum nodes for each thread of the host, in all cloths that fit a work-group, for solving them on a GPU. One cloth
-// takes it as long as many.
+// Minimum nodes for each thread of the host, in all cloths, for solving them on a GPU. A step takes it long however few
+// nodes there are (docs/decisions/, 021).
 constexpr std::size_t kLeastDeviceNodes = 8192;
 
 std::string rounded(double value)

@@ -136,7 +136,7 @@ public:
     // its calls.
     const std::shared_ptr<ThreadTeam>& threads() const;
     // Returns the stage that solves cloths on a device; null if the host should (Settings::m_solverPlace). nodes: the
-    // number in all cloths that fit a work-group.
+    // number in all cloths.
     SolveStage* solveStage(std::size_t nodes);
     // Returns whether a device failed, so that the host runs every step from then on.
     bool deviceFailed() const;

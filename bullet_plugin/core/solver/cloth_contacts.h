@@ -17,7 +17,7 @@ struct FeatureContacts
 {
     const Contact* m_contacts;  // the pipeline's, until its next submit
     std::uint32_t m_count;
-    const OrderedFeature* m_feature;  // of the cloth's order
+    const OrderedFeature* m_feature;  // in the cloth's order
     float m_leastTime;                // earliest time of impact; 1 when nothing was passed
 
     // Returns the indices of the cloth's nodes; -1 where unused.
@@ -38,8 +38,8 @@ struct ClothContacts
     const FeatureOrder* m_order = nullptr;  // the caller's; null for a cloth without contacts
     SolverNodes m_nodes;
     std::vector<FeatureContacts> m_features;  // in canonical order
-    bool m_leavesOut = false;               // m_features lacks contacts that the detection found
-    std::vector<ClothObstacle> m_obstacles;  // in the order of the limit's regions
+    bool m_leavesOut = false;                 // m_features lacks contacts that the detection found
+    std::vector<ClothObstacle> m_obstacles;   // in the order of the limit's regions
     MotionLimit m_limit;
     float m_leastThickness = std::numeric_limits<float>::infinity(), m_mostThickness = 0;  // m, over the cloth's pairs
     float m_friction = 0;          // the cloth's factor of a contact's coefficient

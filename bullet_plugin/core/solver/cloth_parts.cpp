@@ -78,7 +78,6 @@ void ClothParts::cut(std::vector<Vec3> places)
         }
         m_firsts = finer;
     }
-    m_revision = newRevision();
     m_leafOf.resize(places.size());
     for (std::size_t leaf = 0; leaf < leafCount(); ++leaf)
     {
@@ -87,5 +86,6 @@ void ClothParts::cut(std::vector<Vec3> places)
         std::sort(begin, end);
         std::for_each(begin, end, [&](int node) { m_leafOf[static_cast<std::size_t>(node)] = firstLeaf() + leaf; });
     }
+    m_revision = newRevision();
 }
 }  // namespace drape

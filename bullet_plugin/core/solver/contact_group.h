@@ -46,8 +46,8 @@ public:
     // Adds a feature; features come in canonical order, nodes first, then faces. They must stay in place until the last
     // sweep.
     void add(const FeatureContacts& feature) { m_features.push_back(&feature); }
-    // Sorts the features by colours and builds the blocks. Call once, after the last feature, when the cloth's margin is
-    // known.
+    // Sorts the features by colours and builds the blocks. Call once, after the last feature, when the cloth's margin
+    // is known.
     void makeBlocks(const SweptCloth& cloth);
 
     bool empty() const { return m_features.empty(); }

@@ -18,12 +18,14 @@ OrderedFeature featureOf(const ClothParts& parts, const std::uint32_t* nodes, in
 }
 }  // namespace
 
-// Colours the features of a kind. Groups of one height share no node, so they are coloured together.
+// Colours the features of a kind, from the last one on. Groups of one height share no node, so they are coloured
+// together.
 void FeatureOrder::colour(std::uint32_t kind, std::size_t nodeCount)
 {
     std::vector<Colouring> byHeight;
-    for (OrderedFeature& feature : m_features)
+    for (auto at = m_features.rbegin(); at != m_features.rend(); ++at)
     {
+        OrderedFeature& feature = *at;
         if (feature.m_kind != kind) continue;
         const std::size_t height = std::size_t(31 - __builtin_clz(feature.m_group));
         while (byHeight.size() <= height)
@@ -39,6 +41,7 @@ void FeatureOrder::colour(std::uint32_t kind, std::size_t nodeCount)
 
 void FeatureOrder::build(const ClothParts& parts, const Topology& topology)
 {
+    m_partsRevision = 0;
     m_features.clear();
     for (std::uint32_t node = 0; node < topology.m_vertexCount; ++node)
         m_features.push_back(featureOf(parts, &node, 1));
@@ -52,5 +55,6 @@ void FeatureOrder::build(const ClothParts& parts, const Topology& topology)
     colour(kFaceFeature, topology.m_vertexCount);
     colour(kEdgeFeature, topology.m_vertexCount);
     m_revision = newRevision();
+    m_partsRevision = parts.revision();
 }
 }  // namespace drape

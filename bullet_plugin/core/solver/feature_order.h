@@ -36,6 +36,8 @@ public:
     std::size_t firstEdge() const { return m_firstEdge; }
     // Returns whether some features found no colour. They share the last one.
     bool anyUncoloured() const { return m_anyUncoloured; }
+    // Returns the revision of the parts that the order is of; 0 if build() did not end.
+    std::uint64_t partsRevision() const { return m_partsRevision; }
     // Differs after build() from that of any other order.
     std::uint64_t revision() const { return m_revision; }
 
@@ -44,7 +46,7 @@ private:
 
     std::vector<OrderedFeature> m_features;
     std::size_t m_firstTriangle = 0, m_firstEdge = 0;
-    std::uint64_t m_revision = 0;
+    std::uint64_t m_revision = 0, m_partsRevision = 0;
     bool m_anyUncoloured = false;
 };
 }  // namespace drape

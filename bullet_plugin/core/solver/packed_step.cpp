@@ -58,8 +58,9 @@ void PackedStep::packRegions(const ClothContacts& contacts, const ContactSource&
               [](const SolveSurface& a, const SolveSurface& b) { return a.m_obstacle < b.m_obstacle; });
     for (auto region = m_regions.begin() + std::ptrdiff_t(cloth.m_regions.m_first); region != m_regions.end(); ++region)
     {
-        const auto named = std::find_if(first, m_surfaces.end(), [&](const SolveSurface& surface)
-                                        { return surface.m_obstacle == region->m_surface; });
+        const auto named =
+            std::find_if(first, m_surfaces.end(),
+                         [&](const SolveSurface& surface) { return surface.m_obstacle == region->m_surface; });
         region->m_surface = std::uint32_t(named - m_surfaces.begin());
     }
 }

@@ -31,8 +31,11 @@ bool PackedTopology::Key::operator==(const Key& other) const
 PackedTopology::Key PackedTopology::keyOf(const SolverCloth& cloth, const MeshPool* meshes)
 {
     const ClothContacts& contacts = *cloth.m_contacts;
-    Key key = {cloth.m_substeps->links().revision(), contacts.m_limit.faces()->revision(), 0,
-               contacts.m_parts->revision(), {}};
+    Key key = {cloth.m_substeps->links().revision(),
+               contacts.m_limit.faces()->revision(),
+               0,
+               contacts.m_parts->revision(),
+               {}};
     if (!meshes || !contacts.m_order) return key;
     key.m_order = contacts.m_order->revision();
     const MeshOffsets first = meshes->begin(meshes->existingSlot(contacts.m_mesh));
@@ -72,8 +75,7 @@ void PackedTopology::packCloth(const SolverCloth& cloth, const MeshPool* meshes)
     const ClothContacts& contacts = *cloth.m_contacts;
     const ClothParts& parts = *contacts.m_parts;
     const std::size_t firstGroup = m_groups.size(), firstNode = m_places.size();
-    m_cloths.push_back(
-        {std::uint32_t(firstNode), std::uint32_t(m_faceLists.size()), std::uint32_t(firstGroup)});
+    m_cloths.push_back({std::uint32_t(firstNode), std::uint32_t(m_faceLists.size()), std::uint32_t(firstGroup)});
     std::vector<std::uint32_t> placeOf(parts.nodeCount());
     for (std::size_t i = 0; i < parts.nodeCount(); ++i)
     {
@@ -119,10 +121,8 @@ void PackedTopology::packLinks(const LinkSweep& links, const std::vector<std::ui
     }
     m_links.resize(firsts.back());
     links.forLinks(
-        [&](std::uint32_t group, std::uint32_t colour, const std::uint32_t* nodes, float restSquared, float strength)
-        {
-            m_links[firsts[keyOf(group, colour)]++] = {
-                {placeOf[nodes[0]], placeOf[nodes[1]]}, restSquared, strength};
+        [&](std::uint32_t group, std::uint32_t colour, const std::uint32_t* nodes, float restSquared, float strength) {
+            m_links[firsts[keyOf(group, colour)]++] = {{placeOf[nodes[0]], placeOf[nodes[1]]}, restSquared, strength};
         });
 }
 

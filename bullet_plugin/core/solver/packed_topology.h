@@ -1,5 +1,5 @@
-// What a device keeps of cloths from step to step: links, faces, and where the contacts of each feature belong, in the
-// order of sweeps (kernels/shared/solve_step.h).
+// Packs what a device keeps of cloths from step to step, in the order of sweeps: links, faces, and where the contacts
+// of each feature belong (kernels/shared/solve_step.h).
 //
 // Nodes are sorted by the leaves of their cloth's parts. Packing costs time in proportion to the cloths, and is needed
 // when one of them or its place among the pipeline's meshes changed.
@@ -66,8 +66,8 @@ private:
     void packCloth(const SolverCloth& cloth, const MeshPool* meshes);
     void packLinks(const LinkSweep& links, const std::vector<std::uint32_t>& placeOf, std::size_t firstGroup);
     void packFaces(const ClothFaces& faces, const ClothParts& parts, const std::vector<std::uint32_t>& placeOf);
-    void packFeatures(const ClothContacts& contacts, const MeshPool& meshes,
-                      const std::vector<std::uint32_t>& placeOf, std::size_t firstGroup);
+    void packFeatures(const ClothContacts& contacts, const MeshPool& meshes, const std::vector<std::uint32_t>& placeOf,
+                      std::size_t firstGroup);
     void listGroups(const std::vector<SolverCloth>& cloths);
     void layOut();
 

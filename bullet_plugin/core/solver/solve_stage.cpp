@@ -231,8 +231,7 @@ void SolveStage::submit(const SolveStep& step)
 
 bool SolveStage::anyOpen() const
 {
-    const SolveWorkWord* const words =
-        m_resultRead->data() + (m_step->m_layout.m_results - m_step->m_clearedWords);
+    const SolveWorkWord* const words = m_resultRead->data() + (m_step->m_layout.m_results - m_step->m_clearedWords);
     const auto* const results = reinterpret_cast<const SolveResult*>(words);
     return std::any_of(results, results + m_step->m_clothCount,
                        [](const SolveResult& result) { return result.m_isOpen != 0; });

@@ -2,10 +2,10 @@
 //
 // First the contacts are sorted into buckets (order_contacts.cl). A cloth of one leaf is then solved by one work-group,
 // all such cloths in one launch (solve_cloths.cl). Larger cloths take launches for each pass of the step, with a
-// work-group for each group of a level: leaves in local memory, then the levels above (solve_groups.cl). Launches do not
-// depend on the number of cloths. Input: a packed step. Output: the nodes' displacements and states, and a result by
-// cloth, as the host's solver would give them, bit for bit. Cost: one submission and one wait, or more where contacts of
-// a large cloth need many closing sweeps. Errors: in the device.
+// work-group for each group of a level: leaves in local memory, then the levels above (solve_groups.cl). Launches do
+// not depend on the number of cloths. Input: a packed step. Output: the nodes' displacements and states, and a result
+// by cloth, as the host's solver would give them, bit for bit. Cost: one submission and one wait, or more where
+// contacts of a large cloth need many closing sweeps. Errors: in the device.
 #pragma once
 
 #include "bullet_plugin/core/device/bound_kernel.h"
@@ -97,6 +97,6 @@ private:
     Buffer<SolveWorkWord> m_work{"solver memory"};
     std::unique_ptr<Staging<SolveInputWord>> m_inputWritten = std::make_unique<Staging<SolveInputWord>>();
     std::unique_ptr<Staging<SolveWorkWord>> m_resultRead = std::make_unique<Staging<SolveWorkWord>>();
-    Contact m_head = {};  // of the uploaded contacts
+    Contact m_head = {};  // head of the uploaded contacts
 };
 }  // namespace drape

@@ -4,8 +4,9 @@
 // A cloth's links are the core's own, in substeps (substeps.h), or the caller's. Input: nodes at the ends of their
 // paths, and contacts along these. Output: displacements and velocities at the step's end.
 //
-// Guarantee: no contact ends violated by more than kClosingTolerance if DRAPE_LEAST_CLOSING sweeps suffice. Sweeps continue
-// while a violation exceeds what the next step would recover. Results are the same bits with any number of threads.
+// Guarantee: no contact ends violated by more than kClosingTolerance if DRAPE_LEAST_CLOSING sweeps suffice. Sweeps
+// continue while a violation exceeds what the next step would recover. Results are the same bits with any number of
+// threads.
 //
 // Cost: linear in the contacts; kContactSweeps per iteration or substep, and closing sweeps after them
 // (kernels/lib/closing_sweeps.h). Reasons: docs/design_notes/contact_sweeps.md.
@@ -34,9 +35,9 @@ inline int actingSweepsOf(int substeps)
     return std::max(DRAPE_ACTING_SWEEPS, DRAPE_ACTING_IN_STEP / substeps);
 }
 
-// Worst violation that may remain, as a share of the thickness: before DRAPE_LEAST_CLOSING sweeps are done, and after. The
-// second is less than what the next step recovers, since later contacts of a sweep may increase a violation that was
-// measured earlier in it.
+// Worst violation that may remain, as a share of the thickness: before DRAPE_LEAST_CLOSING sweeps are done, and after.
+// The second is less than what the next step recovers, since later contacts of a sweep may increase a violation that
+// was measured earlier in it.
 constexpr float kClosingTolerance = 0.01f;
 constexpr float kMostViolation = 0.0625f;
 // Violation that closing sweeps leave after substeps, as a share of the thickness. Corrections that small would
@@ -106,7 +107,7 @@ private:
     Cloths m_all, m_touching, m_iterating, m_turn, m_meeting, m_open, m_resting, m_others;
     std::vector<LinkedNodes> m_own;  // working memory of forSubsteps()
     PackedStep m_packed;
-    std::vector<const SolverCloth*> m_keeping;  // working memory of keepMomenta()
+    std::vector<const SolverCloth*> m_keeping;                               // working memory of keepMomenta()
     std::vector<SolverCloth> m_onDevice, m_onHost, m_freeOnHost, m_refused;  // working memory of solve()
 };
 }  // namespace drape
