@@ -231,7 +231,7 @@ void SubstepBody::begin(const btSoftBody& body, ClothContacts* recorded, ThreadT
     {
         const bool isNew = std::max(recorded->m_parts->leafCount(), m_parts.leafCount()) > 1;
         ClothParts parts = *recorded->m_parts;
-        m_parts = std::move(parts);  // as a whole, if memory suffices
+        m_parts = std::move(parts);  // the copy may fail, the move cannot
         if (isNew)
         {
             sortLinks();

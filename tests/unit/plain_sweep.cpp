@@ -40,16 +40,19 @@ PlainSweep::PlainSweep(const ClothContacts& cloth, const ContactSource& source, 
     sortRows(cloth);
 }
 
-// Sorts the contacts by group, children first, then by kind and colour. Each feature of the cloth has the least colour
-// that no later feature of the same group and kind has at one of its nodes.
+// Sorts the contacts by group, children first, then by kind and colour. Each edge of the cloth has the least colour
+// that no earlier edge of its group has at one of its nodes, and each face that no later face has.
 void PlainSweep::sortRows(const ClothContacts& cloth)
 {
     std::map<std::pair<std::size_t, std::uint32_t>, std::map<int, std::set<int>>> taken;
     const std::vector<OrderedFeature>& features = cloth.m_order->features();
     std::vector<int> colours(features.size());
-    for (std::size_t i = features.size(); i-- > 0;)
+    for (std::size_t k = 0; k < 2 * features.size(); ++k)
     {
+        const bool isBack = k < features.size();
+        const std::size_t i = isBack ? features.size() - 1 - k : k - features.size();
         const OrderedFeature& feature = features[i];
+        if (isBack != (feature.m_kind == kFaceFeature)) continue;
         auto& nodes = taken[{cloth.m_parts->groupOf(feature.m_nodes), feature.m_kind}];
         int colour = 0;
         const auto isTaken = [&](int node) { return node >= 0 && nodes[node].count(colour) > 0; };
