@@ -257,7 +257,6 @@ void SubstepBody::begin(const btSoftBody& body, ClothContacts* recorded, ThreadT
         }
     };
     forRanges(nodes.count(), threads, read);
-    m_substeps.links().start(nodes.paths(), threads);
     m_substeps.prepare(static_cast<float>(body.m_sst.sdt), substepsOf(body), static_cast<float>(body.m_cfg.kDP),
                        m_accelerations);
 }

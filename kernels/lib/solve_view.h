@@ -7,16 +7,17 @@
 #include "../shared/solve_step.h"
 #include "vec3.h"
 
-// Functions that sweeps run through are inlined, so that the view stays in registers: a function that is not gets a
-// copy, in a memory of the work-item's own, where every access waits.
-// NVIDIA's compiler needs to be told; others inline by themselves, and Oclgrind cannot run what that makes.
+// Functions of the sweeps are inlined, so that the view stays in registers. Otherwise it would be in memory, and each
+// use of one of its pointers would wait. NVIDIA's compiler has to be told. Others inline without it, and Oclgrind fails
+// with it.
 #ifdef __NV_CL_C_VERSION
 #define DRAPE_HOT_FUNCTION static __attribute__((always_inline))
 #else
 #define DRAPE_HOT_FUNCTION static
 #endif
 
-// m_nodes, m_marks: of the nodes from m_base on, counted from the cloth's first node. m_marks: see nextRound().
+// The arrays of the cloth that a work-group solves. m_nodes and m_marks begin with the node m_base, counted from the
+// cloth's first one. m_marks: see DRAPE_ROUND_TAG(). m_sorted, m_acting, m_order: by contact in the order of sweeps.
 typedef struct Solve
 {
     __global const SolveCloth* m_cloth;

@@ -17,10 +17,7 @@ DRAPE_NAMESPACE_BEGIN
 #define DRAPE_SOLVE_JOIN_GROUP 128  // for groups that join leaves
 #define DRAPE_SOLVE_CPU_GROUP 1
 
-// Nodes of a leaf at most: they lie in a work-group's local memory, mostly 48 KiB.
-#define DRAPE_LEAF_NODES 2048
-
-// Sweeps that close the contacts at most, whose violations are kept.
+// Maximum closing sweeps (lib/closing_sweeps.h).
 #define DRAPE_CLOSING_SWEEPS 128
 
 // Words of the three arenas (shared/arenas.h) that hold the step's input, the topology and the working memory.
@@ -62,9 +59,8 @@ typedef struct SolveCloth
     float m_perShift;           // 1/s, velocity per metre of a closing shift
     float m_perSecond;          // 1/s, steps per second
     float m_hardness;           // see targetGap()
-    float m_friction;           // the cloth's factor of a contact's coefficient
     float m_mostThickness;      // m
-    float m_fineViolation;      // m, worst violation that may remain before m_leastClosing sweeps are done
+    float m_fineViolation;      // m, worst violation that may remain before DRAPE_LEAST_CLOSING sweeps
     float m_mostViolation;      // m, and after
     float m_tolerated;          // m, violation that closing sweeps leave
     float m_nearDistance;       // m, below which features may have passed each other
@@ -72,7 +68,6 @@ typedef struct SolveCloth
     float m_retreat;            // m, bound on the displacement of a node by an obstacle's motion
     float m_sure;               // m, see MotionLimit
     float m_leastTolerance;     // m, see MotionLimit
-    DRAPE_UINT m_unused;
 } SolveCloth;
 
 // A group of a cloth's parts: a leaf, or what joins two groups. Its buckets are adjacent: those of nodes, of faces and
@@ -195,7 +190,7 @@ typedef struct SolveResult
 // Positions of the arrays, in words, and numbers of elements.
 typedef struct SolveLayout
 {
-    DRAPE_UINT m_nodeCount, m_clothCount, m_bucketCount, m_obstacleCount;
+    DRAPE_UINT m_nodeCount, m_bucketCount, m_obstacleCount;
     // In the step's input. By node in the caller's order: paths, accelerations.
     DRAPE_UINT m_cloths, m_givenPaths, m_givenAccelerations, m_surfaces, m_regions, m_obstacles;
     // In the working memory. m_order: by contact in the order of sweeps, its place in the list of contacts.

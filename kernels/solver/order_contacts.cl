@@ -16,14 +16,25 @@ static uint contactCount(__global const Contact* contacts)
     return ((__global const StepCounters*)contacts)->m_contactsStored;
 }
 
-// Returns the number of contacts of the feature whose contacts begin at the index; 0 if none do.
-static uint runAt(__global const Contact* contacts, const uint index, const uint count)
+// Contacts of one feature, which are adjacent.
+typedef struct Run
+{
+    uint m_bucket;
+    uint m_count;
+} Run;
+
+// Returns the run that begins at the index; an empty one if none does, or if no cloth of the step has the feature.
+static Run runAt(__global const SolveFeature* features, __global const Contact* contacts, const uint index,
+                 const uint count)
 {
     __global const Contact* first = contacts + DRAPE_CONTACT_HEAD + index;
-    if (index > 0 && first[-1].m_featureIndex == first->m_featureIndex) return 0;
-    uint run = 1;
-    while (index + run < count && first[run].m_featureIndex == first->m_featureIndex)
-        ++run;
+    Run run;
+    run.m_bucket = features[first->m_featureIndex].m_bucket;
+    run.m_count = 0;
+    if (run.m_bucket == DRAPE_NO_BUCKET) return run;
+    if (index > 0 && first[-1].m_featureIndex == first->m_featureIndex) return run;
+    while (index + run.m_count < count && first[run.m_count].m_featureIndex == first->m_featureIndex)
+        ++run.m_count;
     return run;
 }
 
@@ -48,12 +59,12 @@ __kernel void countContacts(DRAPE_ORDER_CONTACTS)
     const uint count = contactCount(contacts);
     for (uint i = get_global_id(0); i < count; i += get_global_size(0))
     {
-        const uint bucket = features[contacts[DRAPE_CONTACT_HEAD + i].m_featureIndex].m_bucket;
-        const uint run = bucket == DRAPE_NO_BUCKET ? 0 : runAt(contacts, i, count);
-        if (run == 0) continue;
-        atomic_add(&buckets[bucket].m_count, run);
-        atomic_add(&progress[cloths[bucket]].m_blocks, (run + DRAPE_BLOCK_CONTACTS - 1) / DRAPE_BLOCK_CONTACTS);
-        if (run > DRAPE_MOST_RANKS) progress[cloths[bucket]].m_refused = 1;
+        const Run run = runAt(features, contacts, i, count);
+        if (run.m_count == 0) continue;
+        __global SolveProgress* cloth = progress + cloths[run.m_bucket];
+        atomic_add(&buckets[run.m_bucket].m_count, run.m_count);
+        atomic_add(&cloth->m_blocks, (run.m_count + DRAPE_BLOCK_CONTACTS - 1) / DRAPE_BLOCK_CONTACTS);
+        if (run.m_count > DRAPE_MOST_RANKS) cloth->m_refused = 1;
     }
 }
 
@@ -74,11 +85,11 @@ __kernel void gatherContacts(DRAPE_ORDER_CONTACTS)
     const uint count = contactCount(contacts);
     for (uint i = get_global_id(0); i < count; i += get_global_size(0))
     {
-        const uint bucket = features[contacts[DRAPE_CONTACT_HEAD + i].m_featureIndex].m_bucket;
-        const uint run = bucket == DRAPE_NO_BUCKET ? 0 : runAt(contacts, i, count);
-        if (run == 0) continue;
-        const uint first = buckets[bucket].m_first + atomic_add(&buckets[bucket].m_filled, run);
-        for (uint rank = 0; rank < run; ++rank)
+        const Run run = runAt(features, contacts, i, count);
+        if (run.m_count == 0) continue;
+        __global SolveBucket* bucket = buckets + run.m_bucket;
+        const uint first = bucket->m_first + atomic_add(&bucket->m_filled, run.m_count);
+        for (uint rank = 0; rank < run.m_count; ++rank)
         {
             order[first + rank] = i + rank;
             sorted[first + rank].m_rank = rank;

@@ -20,9 +20,10 @@ namespace drape
 class ClothParts
 {
 public:
-    // Maximum nodes of a part. Sharing a cloth of a thousand nodes saves 0.1 ms of a step on two cores, but the cloth
-    // slips a little more often at rest. On the bunny it moved faster than 9 mm/s in 4 of 36 falls with parts of 256
-    // to 1,024 nodes, and in none of 12 falls as a whole.
+    // Maximum nodes of a part. A GPU's work-group keeps 20 bytes for each in its local memory, mostly 48 KiB. Sharing a
+    // cloth of a thousand nodes saves 0.1 ms of a step on two cores, but the cloth slips a little more often at rest.
+    // On the bunny it moved faster than 9 mm/s in 4 of 36 falls with parts of 256 to 1,024 nodes, and in none of 12
+    // falls as a whole.
     static constexpr std::size_t kMostNodes = 2048;
 
     // places: positions of all nodes, m, at rest or at any other time. They determine how well the parts are cut and

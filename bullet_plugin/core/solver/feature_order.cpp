@@ -18,9 +18,9 @@ OrderedFeature featureOf(const ClothParts& parts, const std::uint32_t* nodes, in
 }
 }  // namespace
 
-// Colours the features of a kind: edges from the first one on, faces from the last one. Other orders are as good, but
-// cloth thrown at posts and needles comes nearer to them at the end of some steps. Groups of one height share no node,
-// so they are coloured together.
+// Colours the features of a kind: edges from the first one on, faces from the last one. Other orders keep cloth on its
+// side, too, but at the end of some steps cloth thrown at posts and needles is nearer to them. Groups of one height
+// share no node, so they are coloured together.
 void FeatureOrder::colour(std::uint32_t kind, std::size_t nodeCount)
 {
     std::vector<Colouring> byHeight;

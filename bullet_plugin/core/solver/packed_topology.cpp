@@ -230,7 +230,6 @@ void PackedTopology::layOut()
     SolveLayout& layout = m_layout;
     layout = {};
     layout.m_nodeCount = std::uint32_t(m_places.size());
-    layout.m_clothCount = std::uint32_t(m_cloths.size());
     layout.m_bucketCount = std::uint32_t(m_bucketCloths.size());
     layout.m_links = places.add<SolveLink>(m_links.size());
     layout.m_linkBatches = places.add<SolveBatch>(m_linkBatches.size());

@@ -61,6 +61,7 @@ public:
 private:
     // Closing sweeps of the first round, and of each later one.
     static constexpr std::uint32_t kFirstSweeps = DRAPE_LEAST_CLOSING, kMoreSweeps = 24;
+    static_assert(DRAPE_CLOSING_SWEEPS == DRAPE_LEAST_CLOSING + DRAPE_MOST_FURTHER);
 
     void upload(const SolveStep& step);
     void orderContacts(const SolveStep& step);

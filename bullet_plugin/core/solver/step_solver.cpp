@@ -45,19 +45,19 @@ bool obstaclesRest(const ContactSweep* sweep)
     return sweep->contacts().m_limit.obstaclesRest();
 }
 
-// Copies the cloths of `from` for which holds(cloth) is true to `to`, another list.
-template <class Holds>
-void select(const SweepTeam::Cloths& from, SweepTeam::Cloths& to, const Holds& holds)
+// Copies the cloths of `from` for which predicate(cloth) is true to `to`, another list.
+template <class Predicate>
+void select(const SweepTeam::Cloths& from, SweepTeam::Cloths& to, const Predicate& predicate)
 {
     to.clear();
-    std::copy_if(from.begin(), from.end(), std::back_inserter(to), holds);
+    std::copy_if(from.begin(), from.end(), std::back_inserter(to), predicate);
 }
 
-// Keeps the cloths for which holds(cloth) is true.
-template <class Holds>
-void keep(SweepTeam::Cloths& cloths, const Holds& holds)
+// Keeps the cloths for which predicate(cloth) is true.
+template <class Predicate>
+void keep(SweepTeam::Cloths& cloths, const Predicate& predicate)
 {
-    const auto drops = [&](const ContactSweep* sweep) { return !holds(sweep); };
+    const auto drops = [&](const ContactSweep* sweep) { return !predicate(sweep); };
     cloths.erase(std::remove_if(cloths.begin(), cloths.end(), drops), cloths.end());
 }
 

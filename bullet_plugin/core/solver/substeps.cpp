@@ -45,8 +45,9 @@ void Substeps::prepare(float time, int count, float damping, const std::vector<V
     m_kept = float(std::pow(1 - std::min(1.0, std::max(0.0, double(damping))), 1.0 / count));
 }
 
-void Substeps::begin(SolverNodes& nodes, ThreadTeam* threads) const
+void Substeps::begin(SolverNodes& nodes, ThreadTeam* threads)
 {
+    m_links.start(nodes.paths(), threads);
     forNodes(
         nodes.count(), threads,
         [&](std::size_t i)

@@ -51,7 +51,7 @@ public:
 
     // Puts the nodes at the starts of their paths, with the velocities that lead to their ends. threads: null for the
     // caller alone, as in the functions below.
-    void begin(SolverNodes& nodes, ThreadTeam* threads) const;
+    void begin(SolverNodes& nodes, ThreadTeam* threads);
     // Begins a substep: moves the nodes.
     void advance(SolverNodes& nodes, ThreadTeam* threads);
     void sweepLinks(SolverNodes& nodes, ThreadTeam* threads) { m_links.sweep(nodes.nodes(), threads); }
