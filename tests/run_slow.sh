@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # Builds and runs the slow tier: run_slow.sh [options]
 #
-# Runs the slow tests and the tests of the study, thousands of random worlds, the fast and full tiers with the
-# sanitizers, and each fuzzer for five minutes.
+# Runs the slow tests, the tests of the study and thousands of random worlds. Measures cloth that must lie still, in
+# eight falls on each of four obstacles. Runs the fast and full tiers with the sanitizers, and each fuzzer for five
+# minutes.
 #
 #   --jobs N              processes at a time (as many as there are cores)
 #   --plain-failing N     the most worlds that may fail of 4,000 without modifiers (0)
@@ -53,6 +54,8 @@ worlds --kind all --count 4000 --modifiers random --most-failing "$modified"
 worlds --kind tiny --count 300000 --most-failing "$tiny"
 worlds --kind ropes --count 2000 --most-failing "$ropes"
 worlds --kind skirts --most-failing 354 --most-failing-at-end "$skirts"
+# Measured: 0.125 mm/s at most.
+build/release/bin/rest_speeds --models "${DRAPE_MODELS_DIR:-none}" --damping 0.05 --most 0.15 || failed=1
 bash tests/run_sanitized.sh --full || failed=1
 bash tests/run_fuzzers.sh 300 || failed=1
 exit $failed
