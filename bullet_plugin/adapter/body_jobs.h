@@ -3,10 +3,9 @@
 // Results must not depend on the order or the thread. Cost: none but the work's own while it is not worth a thread.
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 
-#include "bullet_plugin/core/threads/thread_team.h"
+#include "bullet_plugin/core/threads/ranges.h"
 
 namespace drape
 {
@@ -20,9 +19,7 @@ constexpr std::size_t kLeastTogether = 4096;
 template <class Work>
 void forRanges(std::size_t count, ThreadTeam* threads, const Work& work)
 {
-    if (!threads || count < kLeastShared) return work(std::size_t(0), count);
-    threads->run((count + kRange - 1) / kRange,
-                 [&](std::size_t range) { work(range * kRange, std::min(count, (range + 1) * kRange)); });
+    forRanges(count, kLeastShared, kRange, threads, work);
 }
 
 // Calls work(i, threads) for every i below `count`, with no threads for small bodies. sizeOf(i): the body's nodes; 0

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <tuple>
 
+#include "bullet_plugin/core/threads/ranges.h"
 #include "colouring.h"
 
 namespace drape
@@ -129,9 +130,9 @@ void LinkSweep::build(std::size_t nodeCount, std::size_t leafCount, const std::v
 
 void LinkSweep::start(const NodePath* paths, ThreadTeam* threads)
 {
-    const auto startRange = [&](std::size_t range)
+    const auto startRange = [&](std::size_t first, std::size_t last)
     {
-        for (std::size_t i = range * kBlocksPerJob; i < std::min(m_blocks.size(), (range + 1) * kBlocksPerJob); ++i)
+        for (std::size_t i = first; i < last; ++i)
         {
             Block& block = m_blocks[i];
             for (std::size_t lane = 0; lane < kWidth; ++lane)
@@ -143,10 +144,7 @@ void LinkSweep::start(const NodePath* paths, ThreadTeam* threads)
             }
         }
     };
-    const std::size_t ranges = (m_blocks.size() + kBlocksPerJob - 1) / kBlocksPerJob;
-    if (threads && linkCount() >= kLeastShared) return threads->run(ranges, startRange);
-    for (std::size_t range = 0; range < ranges; ++range)
-        startRange(range);
+    forRanges(m_blocks.size(), kLeastShared / kWidth, kBlocksPerJob, threads, startRange);
 }
 
 void LinkSweep::visitGroup(std::size_t group, SolverNode* nodes) const

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bullet_plugin/core/threads/ranges.h"
+
 namespace drape
 {
 namespace
@@ -23,9 +25,7 @@ void forNodes(std::size_t count, ThreadTeam* threads, const Work& work)
         for (std::size_t i = first; i < last; ++i)
             work(i);
     };
-    if (!threads || count < kLeastShared) return range(0, count);
-    threads->run((count + kRange - 1) / kRange,
-                 [&](std::size_t i) { range(i * kRange, std::min(count, (i + 1) * kRange)); });
+    forRanges(count, kLeastShared, kRange, threads, range);
 }
 }  // namespace
 
