@@ -51,6 +51,7 @@ struct BodyContacts
     bool m_leftOut = false;              // the body collides with nothing in this step
     bool m_heldTogether = false;         // since the last detection, see stretch.h
     bool m_obstacleJumps = false;        // an obstacle moves farther in the step than its size, or turns far
+    bool m_hasDeformedPair = false;      // an obstacle's vertices move in the step
     std::vector<TangledPair> m_tangled;  // the body's pairs that are pushed apart
     bool m_wasTangled = false;           // in this step or one shortly before
     std::vector<NodePush> m_pushes;
@@ -71,7 +72,7 @@ struct BodyContacts
         m_contacts.m_hardness = float(body->m_cfg.kKHR);
         m_contacts.m_perSecond = float(body->m_sst.isdt);
         m_contacts.m_kept = float(1 - body->m_cfg.kDP);
-        m_leftOut = m_heldTogether = m_obstacleJumps = false;
+        m_leftOut = m_heldTogether = m_obstacleJumps = m_hasDeformedPair = false;
         m_tangled.clear();
         m_wasTangled = false;
         m_pushes.clear();

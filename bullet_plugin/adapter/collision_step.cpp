@@ -103,6 +103,7 @@ CollisionStep::Pair CollisionStep::makePair(const PairNote& note, const ClothMir
     const btScalar reach = note.m_thickness * (1 + btScalar(m_state.settings().m_activation));
     const DeformedPair& deformed = m_deformed.update(cloth, mirror, note.m_motion, note.m_kinematic, reach);
     const std::size_t body = m_byCloth.at(cloth.id());
+    m_bodies[body].m_hasDeformedPair = true;
     m_byCloth[deformed.m_mesh] = body;
     m_uploads.push_back(Upload{deformed.m_mesh, body, deformed.m_starts.data()});
     m_state.m_found.nameCloth(deformed.m_mesh, note.m_cloth);
@@ -179,9 +180,19 @@ void CollisionStep::uploadNodes(Detection detection)
     m_state.pipeline().writeNodes(cloths, write);
 }
 
+// Records the paths again as the detection found them: the solver may have replaced their ends by more precise ones.
+void CollisionStep::recordPaths()
+{
+    for (BodyContacts& body : m_bodies)
+        for (std::size_t i = 0; i < body.nodes().count(); ++i)
+            recordPath(body.m_body->m_nodes[static_cast<int>(i)], i, body.nodes());
+}
+
 void CollisionStep::begin(const std::vector<PairNote>& notes)
 {
     clear();
+    m_metBefore = m_meetsSurface;
+    m_meetsSurface = m_wasSolved = false;
     m_uploadMs = 0;
     m_state.m_found.clear();
     // Adding and removing meshes moves the memory that nodes are written to: mirrors first, nodes after.
@@ -195,10 +206,16 @@ void CollisionStep::begin(const std::vector<PairNote>& notes)
             m_pinned.push_back(note.m_cloth);
     }
     checkStarts();
-    if (!m_pairs.empty()) submit(Detection::First);
 }
 
-void CollisionStep::submit(Detection detection)
+void CollisionStep::submit(ContactPlace place)
+{
+    if (m_pairs.empty()) return;
+    submit(Detection::First, place);
+    m_state.m_found.setOnDevice(m_state.pipeline(), m_state.pipeline().contactsOnDevice());
+}
+
+void CollisionStep::submit(Detection detection, ContactPlace place)
 {
     Stopwatch watch;
     uploadNodes(detection);
@@ -207,15 +224,15 @@ void CollisionStep::submit(Detection detection)
         if (bodyOf(pair.m_cloth)->m_leftOut) continue;
         m_state.pipeline().addPair(pair.m_cloth, pair.m_obstacle, static_cast<float>(pair.m_thickness));
     }
-    m_state.pipeline().submit();
+    m_state.pipeline().submit(place);
     m_uploadMs += watch.lapMs();
 }
 
 // Takes the contacts of the current detection. If that holds bodies together, detects again and takes the new
 // contacts.
-void CollisionStep::receiveHeld(Detection detection)
+void CollisionStep::receiveHeld(Detection detection, const std::function<bool()>& takeSolved)
 {
-    receiveAll(detection);
+    receiveAll(detection, takeSolved);
     if (!m_heldTogether) return;
     // Bodies that are examined again are not left out yet.
     StepStatistics& statistics = m_state.m_statistics;
@@ -261,6 +278,7 @@ void CollisionStep::addContacts(BodyContacts& body, const Contact* first, std::u
     FeatureContacts feature{first, count, &ordered, 1};
     for (std::uint32_t i = 0; i < count; ++i)
         feature.m_leastTime = std::min(feature.m_leastTime, first[i].m_time);
+    m_meetsSurface = m_meetsSurface || feature.m_leastTime < 1;
     for (int k = 0; k < 3 && ordered.m_nodes[k] >= 0; ++k)
         body.m_contacts.m_limit.addContactNode(ordered.m_nodes[k]);
     body.m_contacts.m_features.push_back(feature);
@@ -277,14 +295,26 @@ float CollisionStep::allowanceOf(MeshId cloth) const
     return isApart || body.m_heldTogether || body.m_obstacleJumps ? kMostAllowance : HUGE_VALF;
 }
 
+// Waits for the current detection. Sets wasSolved(), or returns the contacts.
+ContactList CollisionStep::waitForContacts(const std::function<bool()>& takeSolved)
+{
+    Pipeline& pipeline = m_state.pipeline();
+    const ContactList contacts = pipeline.finish([this](MeshId cloth) { return allowanceOf(cloth); });
+    m_wasSolved = pipeline.areContactsOnDevice() && takeSolved && pipeline.ranOnce() && takeSolved();
+    if (m_wasSolved || !pipeline.areContactsOnDevice()) return contacts;
+    recordPaths();
+    return pipeline.bringContacts();
+}
+
 // Waits for the current detection. Its contacts replace any earlier ones of this step.
-void CollisionStep::receiveAll(Detection detection)
+void CollisionStep::receiveAll(Detection detection, const std::function<bool()>& takeSolved)
 {
     for (BodyContacts& body : m_bodies)
         body.m_contacts.m_features.clear();
-    const ContactList contacts = m_state.pipeline().finish([this](MeshId cloth) { return allowanceOf(cloth); });
+    const ContactList contacts = waitForContacts(takeSolved);
     addDetection(m_state.m_statistics, m_state.pipeline().statistics(), detection);
     markUnguarded();
+    if (m_wasSolved) return;
     m_state.m_found.set(m_state.pipeline(), contacts);
     receive(contacts);
 }
@@ -315,7 +345,7 @@ bool CollisionStep::cutPaths()
     return any;
 }
 
-void CollisionStep::finish()
+void CollisionStep::finish(const std::function<bool()>& takeSolved)
 {
     m_state.m_statistics = StepStatistics();
     m_state.m_statistics.m_skipped = m_pairs.empty();
@@ -326,7 +356,8 @@ void CollisionStep::finish()
     m_state.m_statistics.m_startsIntersecting = m_starts.intersectingPairs();
     m_state.m_statistics.m_startIntersections = m_starts.intersections();
     if (m_starts.intersectingPairs() > 0) m_state.m_statistics.m_status |= kStepStartsIntersecting;
-    receiveHeld(Detection::First);
+    receiveHeld(Detection::First, takeSolved);
+    if (m_wasSolved) return;
     for (int detections = 1; detections < kMostDetections && cutPaths(); ++detections)
     {
         submit(Detection::Again);

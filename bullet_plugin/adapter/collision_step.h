@@ -1,10 +1,11 @@
 // Collision for the bodies of one solver, step by step: mirrors, submission, the wait, and the contacts sorted by body.
 //
-// Memory is kept from step to step. begin() needs final predicted positions and returns after enqueueing; finish()
-// waits. Between the two nothing may touch the mirrors. Output: for each body its contacts in canonical order. Errors:
-// exceptions of the pipeline pass through.
+// Memory is kept from step to step. begin() needs final predicted positions, submit() returns after enqueueing, and
+// finish() waits. Between them nothing may touch the mirrors. Output: for each body its contacts in canonical order, or
+// bodies that a device has solved. Errors: exceptions of the pipeline pass through.
 #pragma once
 
+#include <functional>
 #include <unordered_map>
 #include <unordered_set>
 #include <vector>
@@ -24,7 +25,17 @@ public:
     explicit CollisionStep(PluginState& state) : m_state(state), m_deformed(state), m_starts(state) {}
 
     void begin(const std::vector<PairNote>& notes);
-    void finish();
+    // Returns whether there is anything to submit.
+    bool hasPairs() const { return !m_pairs.empty(); }
+    // Returns whether a path met a surface in the step before, so that one is likely to do so in this step.
+    bool metSurface() const { return m_metBefore; }
+    const std::vector<BodyContacts>& bodies() const { return m_bodies; }
+    // Records the bodies' paths and enqueues the detection. place: where its contacts go, if possible.
+    void submit(ContactPlace place);
+    // takeSolved: called after the wait if the contacts are on the device. Returns whether commands enqueued behind the
+    // detection have solved the bodies; then no contacts are sorted, and wasSolved() is true. Null if there are none.
+    void finish(const std::function<bool()>& takeSolved = nullptr);
+    bool wasSolved() const { return m_wasSolved; }
     // Detects again, once the bodies are solved, along the real paths of bodies whose links pulled nodes far off
     // their predicted paths. Ends those paths before anything that they would have passed. Returns these bodies, with
     // their contacts along the paths.
@@ -77,9 +88,11 @@ private:
     void markUnguarded();
     void leaveOut(std::size_t index);
     void uploadNodes(Detection detection);
-    void submit(Detection detection);
-    void receiveAll(Detection detection);
-    void receiveHeld(Detection detection);
+    void recordPaths();
+    void submit(Detection detection, ContactPlace place = ContactPlace::Host);
+    ContactList waitForContacts(const std::function<bool()>& takeSolved);
+    void receiveAll(Detection detection, const std::function<bool()>& takeSolved = nullptr);
+    void receiveHeld(Detection detection, const std::function<bool()>& takeSolved = nullptr);
     float allowanceOf(MeshId cloth) const;
     void receive(const ContactList& contacts);
     std::vector<SolverContact> impactsOf(const BodyContacts& body) const;
@@ -99,8 +112,10 @@ private:
     std::vector<const btSoftBody*> m_pinned;
     std::vector<ClothMirror*> m_mirrors;  // one for each of m_bodies
     std::vector<Upload> m_uploads;
-    bool m_heldTogether = false;  // any body, since the last detection
-    double m_uploadMs = 0;        // see uploadMs()
+    bool m_heldTogether = false;                       // any body, since the last detection
+    double m_uploadMs = 0;                             // see uploadMs()
+    bool m_meetsSurface = false, m_metBefore = false;  // see metSurface(); in this step and the one before
+    bool m_wasSolved = false;
     DeformedPairs m_deformed;
     PairStarts m_starts;
     std::vector<std::vector<int>> m_jumped;           // result of checkStarts(), by body

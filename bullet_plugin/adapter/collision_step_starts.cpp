@@ -67,7 +67,10 @@ void CollisionStep::checkStarts()
             m_bodies[body].m_pushes[i].m_carry.m_starts = pair.m_carriedStarts;
     }
     for (BodyContacts& body : m_bodies)
+    {
         preparePushes(body);
+        body.m_contacts.m_isFiltered = !body.m_tangled.empty() || !body.m_pushes.empty();
+    }
 }
 
 // Moves the predicted ends of nodes that are pushed, so that detection and the motion limit see where they go. Makes
@@ -113,7 +116,6 @@ void CollisionStep::addHeldContacts(BodyContacts& body, const Contact* first, st
         const Contact* const next = std::find_if_not(contact, end, isHeld);
         if (next != contact) addContacts(body, contact, static_cast<std::uint32_t>(next - contact), ordered);
         contact = std::find_if(next, end, isHeld);
-        body.m_contacts.m_leavesOut = body.m_contacts.m_leavesOut || contact != next;
     }
 }
 

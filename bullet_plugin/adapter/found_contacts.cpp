@@ -15,11 +15,16 @@ void FoundContacts::nameObstacle(MeshId obstacle, const btCollisionObject* objec
     m_source.nameObstacle(obstacle, surface);
 }
 
-void FoundContacts::set(const Pipeline& pipeline, const ContactList& contacts)
+void FoundContacts::set(Pipeline& pipeline, const ContactList& contacts)
 {
     m_pipeline = &pipeline;
     m_source.setPipeline(pipeline, contacts);
-    m_contacts = contacts;
+}
+
+void FoundContacts::setOnDevice(Pipeline& pipeline, const DeviceContacts& contacts)
+{
+    m_pipeline = &pipeline;
+    m_source.setOnDevice(pipeline, contacts);
 }
 
 void FoundContacts::keepList()
@@ -50,8 +55,10 @@ std::vector<ContactInfo> FoundContacts::list() const
 {
     if (m_keeps) return m_kept;
     std::vector<ContactInfo> infos;
-    infos.reserve(m_contacts.size());
-    for (const Contact& contact : m_contacts)
+    if (!m_pipeline) return infos;
+    const ContactList contacts = m_pipeline->bringContacts();
+    infos.reserve(contacts.size());
+    for (const Contact& contact : contacts)
         infos.push_back(infoOf(contact));
     return infos;
 }

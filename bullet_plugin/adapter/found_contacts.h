@@ -1,7 +1,8 @@
 // The contacts of the last detection, and Bullet's objects for the meshes that they name.
 //
 // Job: name bodies and obstacles for the solver's source of contacts, and list all contacts for Plugin::contacts().
-// Input: the pipeline's list, which the pipeline owns; it is valid until the pipeline's next submit.
+// Input: the pipeline's list, which the pipeline owns; it is valid until the pipeline's next submit. A list that is on
+// the device comes to the host when list() asks for it.
 #pragma once
 
 #include <unordered_map>
@@ -20,7 +21,8 @@ public:
     void clear() { *this = FoundContacts(); }
     void nameCloth(MeshId cloth, const btSoftBody* body) { m_bodies[cloth] = body; }
     void nameObstacle(MeshId obstacle, const btCollisionObject* object, const BodyMotion& motion);
-    void set(const Pipeline& pipeline, const ContactList& contacts);
+    void set(Pipeline& pipeline, const ContactList& contacts);
+    void setOnDevice(Pipeline& pipeline, const DeviceContacts& contacts);
     // Keeps list() as it is now until clear(), whatever is found later.
     void keepList();
     std::vector<ContactInfo> list() const;
@@ -34,8 +36,7 @@ private:
     std::unordered_map<MeshId, const btSoftBody*> m_bodies;
     std::unordered_map<MeshId, const btCollisionObject*> m_obstacles;
     ContactSource m_source;
-    const Pipeline* m_pipeline = nullptr;
-    ContactList m_contacts;
+    Pipeline* m_pipeline = nullptr;
     std::vector<ContactInfo> m_kept;
     bool m_keeps = false;
 };

@@ -90,24 +90,26 @@ struct SoftBodySolver::Work
         const auto found = m_substeps.find(&body);
         return found != m_substeps.end() && found->second->isPredicted() ? found->second.get() : nullptr;
     }
-    // Runs Bullet's solver for the bodies without contacts from index `first` on, up to the next one with contacts,
-    // whose index is returned. Scenes may have thousands of small bodies: the environment changes once for all of them.
-    int solveByBullet(const btAlignedObjectArray<btSoftBody*>& bodies, int first)
+    // Runs Bullet's solver for the bodies without contacts. Scenes may have thousands of small bodies: the environment
+    // changes once for all of them.
+    void solveByBullet(const btAlignedObjectArray<btSoftBody*>& bodies)
     {
         const CallersFloats floats;
-        int i = first;
-        for (; i < bodies.size(); ++i)
+        for (int i = 0; i < bodies.size(); ++i)
         {
-            if (!isSteppedBody(*bodies[i])) continue;
-            if (contactsOf(*bodies[i]) || substepsOf(*bodies[i])) break;
+            if (!isSteppedBody(*bodies[i]) || contactsOf(*bodies[i]) || substepsOf(*bodies[i])) continue;
             m_solved[static_cast<std::size_t>(i)] = 1;
             bodies[i]->solveConstraints();
         }
-        return i;
     }
     void predict(const btAlignedObjectArray<btSoftBody*>& bodies, btScalar dt);
+    std::size_t substepNodes(const btSoftBody& body) const;
     void beginSubsteps(const btAlignedObjectArray<btSoftBody*>& bodies);
-    bool take(btSoftBody& body);
+    void readPaths(const btAlignedObjectArray<btSoftBody*>& bodies);
+    void takeSubsteps(const btAlignedObjectArray<btSoftBody*>& bodies);
+    void takeForeign(const btAlignedObjectArray<btSoftBody*>& bodies);
+    bool mayFollow(const btAlignedObjectArray<btSoftBody*>& bodies) const;
+    bool submitBehind(const btAlignedObjectArray<btSoftBody*>& bodies, const ContactSource& source);
     BodyContacts* contactsOf(const btSoftBody& body) { return m_step ? m_step->contactsOf(body) : nullptr; }
 
     // Releases memory that only earlier, larger steps needed. Call before a step's begin().
@@ -137,6 +139,8 @@ struct SoftBodySolver::Work
     std::vector<const btSoftBody*> m_predicted;                      // in this step, sorted by address
     bool m_listed = false;                                           // m_predicted is whole
     bool m_detected = false;                                         // the paths of all bodies with a pair are recorded
+    bool m_begun = false;                                            // beginSubsteps() was called in this step
+    SolveStage* m_stage = nullptr;                                   // solves this step's cloths; null: the host does
     std::size_t m_asleep = 0;                                        // cloths that are not among them
     StepParts m_parts;                                               // parts of the running step, without its waits
     std::uint64_t m_failures;  // failures of the state that a step of this solver has reported
@@ -338,15 +342,22 @@ void SoftBodySolver::detect()
     Work& work = *m_work;
     if (!m_state->ready()) return work.m_step.reset();
     m_state->restart();
+    chooseStage();
     if (!work.m_step) work.m_step = std::make_unique<CollisionStep>(*m_state);
     CollisionStep& step = *work.m_step;
     StepStatistics& statistics = m_state->m_statistics;
     if (work.m_usage.hasFallen(elementsOf(statistics))) work.giveBackRoom(*m_state);
     Stopwatch watch;
     step.begin(m_state->takeNotes(this, work.m_predicted));
+    work.m_parts.m_mirrorMs += watch.lapMs();
+    const bool follows = work.m_stage && work.mayFollow(m_softBodySet);
+    step.submit(follows ? ContactPlace::Device : ContactPlace::Host);
     const double uploadMs = step.uploadMs();
-    work.m_parts.m_mirrorMs += watch.lapMs() - uploadMs;
-    step.finish();
+    watch.lapMs();
+    const bool submitted = follows && work.submitBehind(m_softBodySet, m_state->m_found.source());
+    work.m_parts.m_readMs += watch.lapMs();
+    step.finish(submitted ? [&work] { return work.m_solver->finishBehind(work.m_touched, work.m_free, *work.m_stage); }
+                          : std::function<bool()>());
     for (int i = 0; i < m_softBodySet.size(); ++i)
         step.reportInvalid(*m_softBodySet[i]);
     work.m_detected = true;
@@ -354,75 +365,127 @@ void SoftBodySolver::detect()
     work.m_parts.m_writeMs = watch.lapMs() - statistics.m_waitMs - (step.uploadMs() - uploadMs);
 }
 
+// Returns the number of nodes of a body whose links the core solves in this step; 0 for others.
+std::size_t SoftBodySolver::Work::substepNodes(const btSoftBody& body) const
+{
+    return isSteppedBody(body) && substepsOf(body) ? static_cast<std::size_t>(body.m_nodes.size()) : 0;
+}
+
 // Prepares the steps of all bodies whose links the core solves.
 void SoftBodySolver::Work::beginSubsteps(const btAlignedObjectArray<btSoftBody*>& bodies)
 {
-    const auto sizeOf = [&](std::size_t i)
-    {
-        const btSoftBody& body = *bodies[int(i)];
-        return substepsOf(body) && isSteppedBody(body) ? static_cast<std::size_t>(body.m_nodes.size()) : 0;
-    };
+    m_begun = true;
     const auto begin = [&](std::size_t i, ThreadTeam* threads)
     {
         const btSoftBody& body = *bodies[int(i)];
         BodyContacts* const contacts = contactsOf(body);
         substepsOf(body)->begin(body, contacts ? &contacts->m_contacts : nullptr, threads);
     };
-    forBodies(static_cast<std::size_t>(bodies.size()), m_threads, sizeOf, begin);
+    forBodies(
+        static_cast<std::size_t>(bodies.size()), m_threads,
+        [&](std::size_t i) { return substepNodes(*bodies[int(i)]); }, begin);
 }
 
-// Hands a body with a pair, or whose links the core solves, to the solver. Returns whether it is one.
-bool SoftBodySolver::Work::take(btSoftBody& body)
+// Reads the paths of these bodies.
+void SoftBodySolver::Work::readPaths(const btAlignedObjectArray<btSoftBody*>& bodies)
 {
-    if (!isSteppedBody(body)) return false;
-    BodyContacts* const contacts = contactsOf(body);
-    SubstepBody* const substeps = substepsOf(body);
-    if (!contacts && !substeps) return false;
-    if (substeps)
+    const auto read = [&](std::size_t i, ThreadTeam* threads)
     {
-        ClothContacts& cloth = contacts ? contacts->m_contacts : substeps->alone();
-        substeps->addRows(body, cloth.m_nodes, m_rigidBodies);
-        m_ends.emplace_back(&body, &cloth.m_nodes);
-        if (contacts || substeps->rigidRows())
-            m_touched.push_back({&cloth, &substeps->substeps(), nullptr, substeps->rigidRows()});
-        else
-            m_free.push_back({&cloth, &substeps->substeps(), nullptr, nullptr});
-        return true;
-    }
-    m_bulletLinks.emplace_back(new BulletLinks(body, !contacts->m_contacts.m_features.empty()));
-    m_touched.push_back({&contacts->m_contacts, nullptr, m_bulletLinks.back().get(), nullptr});
-    return true;
+        const btSoftBody& body = *bodies[int(i)];
+        BodyContacts* const contacts = contactsOf(body);
+        substepsOf(body)->readPaths(body, contacts ? &contacts->m_contacts : nullptr, threads);
+    };
+    forBodies(
+        static_cast<std::size_t>(bodies.size()), m_threads,
+        [&](std::size_t i) { return substepNodes(*bodies[int(i)]); }, read);
 }
 
+// Hands the bodies whose links the core solves to the solver, with their paths.
+void SoftBodySolver::Work::takeSubsteps(const btAlignedObjectArray<btSoftBody*>& bodies)
+{
+    m_touched.clear();
+    m_free.clear();
+    m_ends.clear();
+    m_rigidBodies.clear();
+    if (!m_begun) beginSubsteps(bodies);
+    readPaths(bodies);
+    for (int i = 0; i < bodies.size(); ++i)
+    {
+        btSoftBody& body = *bodies[i];
+        if (substepNodes(body) == 0) continue;
+        BodyContacts* const contacts = contactsOf(body);
+        SubstepBody& substeps = *substepsOf(body);
+        ClothContacts& cloth = contacts ? contacts->m_contacts : substeps.alone();
+        substeps.addRows(body, cloth.m_nodes, m_rigidBodies);
+        m_ends.emplace_back(&body, &cloth.m_nodes);
+        const bool isFree = !contacts && !substeps.rigidRows();
+        (isFree ? m_free : m_touched).push_back({&cloth, &substeps.substeps(), nullptr, substeps.rigidRows()});
+    }
+}
+
+// Hands the bodies with a pair whose links Bullet solves to the solver.
+void SoftBodySolver::Work::takeForeign(const btAlignedObjectArray<btSoftBody*>& bodies)
+{
+    m_bulletLinks.clear();
+    for (int i = 0; i < bodies.size(); ++i)
+    {
+        btSoftBody& body = *bodies[i];
+        BodyContacts* const contacts = contactsOf(body);
+        if (!contacts || !isSteppedBody(body) || substepsOf(body)) continue;
+        m_bulletLinks.emplace_back(new BulletLinks(body, !contacts->m_contacts.m_features.empty()));
+        m_touched.push_back({&contacts->m_contacts, nullptr, m_bulletLinks.back().get(), nullptr});
+    }
+}
+
+// Returns whether the device may solve the step behind the detection, whose contacts then stay there: it is likely to
+// solve all bodies with a pair. A path that meets a surface has to end there before.
+bool SoftBodySolver::Work::mayFollow(const btAlignedObjectArray<btSoftBody*>& bodies) const
+{
+    if (!m_stage || !m_step->hasPairs() || m_step->metSurface()) return false;
+    const auto fits = [this](const BodyContacts& body)
+    { return substepNodes(*body.m_body) > 0 && !body.m_contacts.m_isFiltered && !body.m_hasDeformedPair; };
+    const auto isRigid = [](const btSoftBody* body)
+    { return body->m_rcontacts.size() > 0 || body->m_anchors.size() > 0; };
+    return std::all_of(m_step->bodies().begin(), m_step->bodies().end(), fits) &&
+           std::none_of(&bodies[0], &bodies[0] + bodies.size(), isRigid);
+}
+
+// Enqueues the step of all bodies behind the detection. Returns false, with nothing enqueued, if that is not possible.
+bool SoftBodySolver::Work::submitBehind(const btAlignedObjectArray<btSoftBody*>& bodies, const ContactSource& source)
+{
+    if (!source.onDevice().m_list) return false;
+    takeSubsteps(bodies);
+    return m_solver->submitBehind(m_touched, m_free, source, *m_stage);
+}
+
+// Sets the stage that solves this step's cloths.
+void SoftBodySolver::chooseStage()
+{
+    std::size_t nodes = 0;
+    for (int i = 0; i < m_softBodySet.size(); ++i)
+        nodes += m_work->substepNodes(*m_softBodySet[i]);
+    if (nodes > 0) m_work->m_stage = m_state->pipeline().solveStage(nodes);
+}
+
+// Solves the bodies that the device has not solved behind the detection, and writes all results back.
 void SoftBodySolver::solveBodies(StepParts& parts)
 {
     Work& work = *m_work;
-    work.m_touched.clear();
     work.m_bulletLinks.clear();
-    work.m_free.clear();
-    work.m_ends.clear();
-    work.m_rigidBodies.clear();
     work.m_solved.assign(static_cast<std::size_t>(m_softBodySet.size()), 0);
+    const bool wasSolved = work.m_step && work.m_step->wasSolved();
     Stopwatch watch;
-    work.beginSubsteps(m_softBodySet);
-    for (int i = 0; i < m_softBodySet.size();)
+    if (!wasSolved)
     {
-        if (work.take(*m_softBodySet[i]))
-        {
-            ++i;
-            continue;
-        }
-        parts.m_readMs += watch.lapMs();
-        i = work.solveByBullet(m_softBodySet, i);
-        parts.m_bulletMs += watch.lapMs();
+        work.takeSubsteps(m_softBodySet);
+        work.takeForeign(m_softBodySet);
     }
     parts.m_readMs += watch.lapMs();
-    std::size_t nodes = 0;
-    for (const auto& end : work.m_ends)
-        nodes += end.second->count();
-    SolveStage* const stage = nodes > 0 ? m_state->pipeline().solveStage(nodes) : nullptr;
+    work.solveByBullet(m_softBodySet);
+    parts.m_bulletMs += watch.lapMs();
     m_state->m_statistics.m_clothsOnDevice =
-        work.m_solver->solve(work.m_touched, work.m_free, m_state->m_found.source(), stage);
+        wasSolved ? work.m_ends.size()
+                  : work.m_solver->solve(work.m_touched, work.m_free, m_state->m_found.source(), work.m_stage);
     double linksMs = 0;
     for (const std::unique_ptr<BulletLinks>& links : work.m_bulletLinks)
         linksMs += links->ms();
@@ -463,7 +526,10 @@ void SoftBodySolver::closeOffPath(const std::vector<BodyContacts*>& bodies)
 void SoftBodySolver::solveStep()
 {
     StepParts& parts = m_work->m_parts;
+    const std::size_t waits = m_state->ready() ? m_state->pipeline().deviceWaits() : 0;
     Stopwatch watch;
+    m_work->m_begun = false;
+    m_work->m_stage = nullptr;
     leaveToBullet();
     parts.m_readMs += watch.lapMs();
     detect();
@@ -482,6 +548,8 @@ void SoftBodySolver::solveStep()
     parts.m_broadMs = statistics.m_broadMs;
     parts.m_narrowMs = statistics.m_narrowMs;
     static_cast<StepParts&>(statistics) = parts;
+    const std::size_t all = m_state->pipeline().deviceWaits();
+    statistics.m_deviceWaits = all > waits ? all - waits : 0;  // a device may have been opened anew
 }
 
 // Ends a step in which an exception was caught: Bullet solves the bodies that Drape does not handle, and Drape's cloths

@@ -238,14 +238,20 @@ void SubstepBody::begin(const btSoftBody& body, ClothContacts* recorded, ThreadT
             setLinks(body, threads);
         }
     }
-    SolverNodes& nodes = recorded ? recorded->m_nodes : m_alone.m_nodes;
     if (!recorded)
     {
-        nodes.resize(nodeCount(body));
+        m_alone.m_nodes.resize(nodeCount(body));
         m_alone.start(kNoMesh, m_parts, nullptr);
         m_alone.m_limit.startStep(m_noFaces);
         m_alone.m_perSecond = static_cast<float>(body.m_sst.isdt);
     }
+    m_substeps.prepare(static_cast<float>(body.m_sst.sdt), substepsOf(body), static_cast<float>(body.m_cfg.kDP),
+                       m_accelerations);
+}
+
+void SubstepBody::readPaths(const btSoftBody& body, ClothContacts* recorded, ThreadTeam* threads)
+{
+    SolverNodes& nodes = recorded ? recorded->m_nodes : m_alone.m_nodes;
     const auto read = [&](std::size_t first, std::size_t last)
     {
         for (std::size_t i = first; i < last; ++i)
@@ -257,8 +263,6 @@ void SubstepBody::begin(const btSoftBody& body, ClothContacts* recorded, ThreadT
         }
     };
     forRanges(nodes.count(), threads, read);
-    m_substeps.prepare(static_cast<float>(body.m_sst.sdt), substepsOf(body), static_cast<float>(body.m_cfg.kDP),
-                       m_accelerations);
 }
 
 void SubstepBody::addRows(const btSoftBody& body, const SolverNodes& nodes, RigidBodies& bodies)

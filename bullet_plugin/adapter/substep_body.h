@@ -49,10 +49,13 @@ public:
     // Returns the number of substeps: piterations, but at least kLeastSubsteps.
     static int substepsOf(const btSoftBody& body);
 
-    // Prepares the solver's step, after canSolveNow(). recorded: the cloth with the paths that were recorded; null:
-    // alone(), whose paths are recorded now.
+    // Prepares the solver's step, once, after canSolveNow(). recorded: the cloth with the paths that were recorded;
+    // null: alone().
     void begin(const btSoftBody& body, ClothContacts* recorded, ThreadTeam* threads);
-    // Adds rows for the rigid bodies that the body touches or hangs on, after begin(). nodes: those of begin().
+    // Gives the recorded paths the ends that the prediction knows more precisely, unless they were moved since. Records
+    // the paths of alone().
+    void readPaths(const btSoftBody& body, ClothContacts* recorded, ThreadTeam* threads);
+    // Adds rows for the rigid bodies that the body touches or hangs on, after readPaths(). nodes: those of it.
     void addRows(const btSoftBody& body, const SolverNodes& nodes, RigidBodies& bodies);
     // The cloth of a body without pairs.
     ClothContacts& alone() { return m_alone; }

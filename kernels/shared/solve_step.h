@@ -174,7 +174,8 @@ typedef struct SolveProgress
     DRAPE_UINT m_ended;    // the round in which the step ended; 0: it has not
     DRAPE_UINT m_isNear;   // true if a contact ends so near that a surface may have been passed
     DRAPE_UINT m_refused;  // true if a feature has too many contacts
-    DRAPE_UINT m_unused[3];
+    DRAPE_UINT m_meets;    // true if a node's path meets a surface
+    DRAPE_UINT m_unused[2];
     float m_worst[DRAPE_CLOSING_SWEEPS + 4];  // m, by closing sweep
 } SolveProgress;
 
@@ -184,7 +185,7 @@ typedef struct SolveResult
     DRAPE_UINT m_mayHavePassed;  // true if a contact ends so near that a surface may have been passed
     DRAPE_UINT m_isOpen;         // true if the cloth needs more closing sweeps than were enqueued
     DRAPE_UINT m_refused;        // true if the device cannot solve the cloth
-    DRAPE_UINT m_unused;
+    DRAPE_UINT m_meets;          // true if a path meets a surface: paths may have to end there before the solver begins
 } SolveResult;
 
 // Positions of the arrays, in words, and numbers of elements.

@@ -104,6 +104,7 @@ __kernel void prepareContacts(DRAPE_ORDER_CONTACTS)
     __global const uint* cloths = (__global const uint*)(topology + layout.m_bucketCloths);
     __global SolveContact* sorted = (__global SolveContact*)(work + layout.m_sorted);
     __global const uint* order = (__global const uint*)(work + layout.m_order);
+    __global SolveProgress* progress = (__global SolveProgress*)(work + layout.m_progress);
     const uint total = *(__global const uint*)(work + layout.m_total);
     for (uint i = get_global_id(0); i < total; i += get_global_size(0))
     {
@@ -137,6 +138,7 @@ __kernel void prepareContacts(DRAPE_ORDER_CONTACTS)
         contact.m_flags = (turns ? DRAPE_CONTACT_TURNS : 0u) | count << 8;
         contact.m_pushing = 0;
         contact.m_rank = sorted[i].m_rank;
+        if (found->m_time < 1.0f) progress[cloths[feature.m_bucket]].m_meets = 1;
         sorted[i] = contact;
     }
 }

@@ -112,6 +112,7 @@ DRAPE_RARE_FUNCTION void endCloth(const Solve* solve, __global SolverNode* ends,
     result->m_mayHavePassed = near;
     result->m_isOpen = 0;
     result->m_refused = solve->m_progress->m_refused;
+    result->m_meets = solve->m_progress->m_meets;
 }
 
 // Sweeps until no contact is violated by more than the tolerances.

@@ -123,6 +123,7 @@ static void writeResult(const Solve* solve, const SolvePass* pass, __global Solv
     result->m_mayHavePassed = solve->m_progress->m_isNear;
     result->m_isOpen = !ends;
     result->m_refused = solve->m_progress->m_refused;
+    result->m_meets = solve->m_progress->m_meets;
     if (ends) solve->m_progress->m_ended = pass->m_round;
 }
 

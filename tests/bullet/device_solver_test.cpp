@@ -18,7 +18,10 @@ constexpr int kSteps = 60;
 struct Trajectory
 {
     std::uint64_t m_hash = kHashStart;
-    std::size_t m_onDevice = 0;  // cloths that the device solved, over all steps
+    std::size_t m_onDevice = 0;        // cloths that the device solved, over all steps
+    std::size_t m_waitsAtEnd = 0;      // for the device, in the last step
+    std::size_t m_contactsAtEnd = 0;   // number in the last step
+    std::vector<ContactInfo> m_asked;  // the last step's contacts, asked for after it
 };
 
 // A world to which a test adds cloths; beforeStep, if any, moves the obstacle.
@@ -53,6 +56,9 @@ Trajectory run(const Scene& scene, Settings settings, SolverPlace place)
         for (const btSoftBody* cloth : cloths)
             trajectory.m_hash = hashOf(*cloth, trajectory.m_hash);
     }
+    trajectory.m_waitsAtEnd = plugin.statistics().m_deviceWaits;
+    trajectory.m_contactsAtEnd = plugin.statistics().m_contacts;
+    trajectory.m_asked = plugin.contacts();
     return trajectory;
 }
 
@@ -90,6 +96,23 @@ TEST_P(DeviceSolverTest, AClothDropsAsOnTheHost)
 {
     EXPECT_EQ(expectSame({clothsOf(1, 17, 0)}), std::size_t(kSteps));
     EXPECT_EQ(expectSame({clothsOf(1, 17, 20)}), std::size_t(kSteps));
+}
+
+// The contacts stay on the device, and the step is solved behind the detection. The last contacts come on request.
+TEST_P(DeviceSolverTest, AStepAtRestWaitsOnce)
+{
+    const Scene scene = {clothsOf(1, 17, 0)};
+    const Trajectory host = run(scene, hostSettings(), SolverPlace::Host);
+    const Trajectory device = run(scene, GetParam().m_settings, SolverPlace::Device);
+    EXPECT_EQ(device.m_waitsAtEnd, 1u);
+    EXPECT_GT(device.m_contactsAtEnd, 0u);
+    EXPECT_EQ(device.m_contactsAtEnd, host.m_contactsAtEnd);
+    ASSERT_EQ(device.m_asked.size(), host.m_asked.size());
+    for (std::size_t i = 0; i < host.m_asked.size(); ++i)
+    {
+        EXPECT_EQ(device.m_asked[i].m_gap, host.m_asked[i].m_gap);
+        EXPECT_EQ(device.m_asked[i].m_nodes[0], host.m_asked[i].m_nodes[0]);
+    }
 }
 
 // Cloths of two and of eight leaves, which take launches for each level.

@@ -181,7 +181,7 @@ void DeviceBackend::enqueueStep(const Scene& scene, const StepPairs& pairs)
     enqueueBroad(scene, pairs);
     enqueueNarrow(scene, pairs);
     enqueueOrdering();
-    readContacts(m_contactsAsked);
+    readContacts(m_place == ContactPlace::Host ? m_contactsAsked : 0);
     m_device->flush();
 }
 
@@ -191,12 +191,19 @@ void DeviceBackend::prepare(const Scene& scene)
     m_device->wait();
 }
 
-void DeviceBackend::submit(const Scene& scene, const StepPairs& pairs, std::size_t sent)
+void DeviceBackend::submit(const Scene& scene, const StepPairs& pairs, ContactPlace place, std::size_t sent)
 {
     m_limitReached = false;
+    m_place = place;
     updateTopology(scene);
     uploadStep(scene, pairs, sent);
     enqueueStep(scene, pairs);
 }
 
+DeviceContacts DeviceBackend::contactsOnDevice()
+{
+    if (m_place == ContactPlace::Host || m_device->failed()) return DeviceContacts();
+    const std::size_t room = m_unsorted.capacity();
+    return {&m_ordering.contacts(), room, std::min(room, m_contactsBefore)};
+}
 }  // namespace drape

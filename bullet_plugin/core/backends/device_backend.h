@@ -41,14 +41,19 @@ public:
     // Begins the upload of the cloths' nodes, start and end, before the step is submitted. Returns false if the device
     // does not know the cloths yet.
     bool sendNodes(const Scene& scene, std::size_t first, std::size_t count);
-    // Returns after enqueueing. The scene and the pairs must stay unchanged until finish(). sent: number of the cloths'
-    // first nodes that are uploaded already.
-    void submit(const Scene& scene, const StepPairs& pairs, std::size_t sent = 0);
+    // Returns after enqueueing. The scene and the pairs must stay unchanged until finish(). place: where the contacts
+    // go. sent: number of the cloths' first nodes that are uploaded already.
+    void submit(const Scene& scene, const StepPairs& pairs, ContactPlace place = ContactPlace::Host,
+                std::size_t sent = 0);
+    // Returns the list of the submitted step if its contacts stay on the device; else an empty one.
+    DeviceContacts contactsOnDevice();
     // Waits. Returns false if the device failed or has no room for the step (then limitReached()). The result says
     // whether the step exceeded the settings' limits; if not, its counts are written to the statistics. Retries are
     // added.
     bool finish(const Scene& scene, const StepPairs& pairs, StepResult& result, StepStatistics& statistics);
     bool limitReached() const { return m_limitReached; }
+    // Brings contacts that stayed on the device to the host. Waits. Returns false if the device failed.
+    bool bringContacts(StepResult& result);
 
 private:
     // Makes room for the lists of a first step.
@@ -74,7 +79,8 @@ private:
     bool overLimit(const StepPairs& pairs, StepResult& result);
     // Makes room for the last run's demand. Returns whether the step must run again.
     bool grow();
-    void readAll(StepResult& result);
+    // Makes the result's list; the first `read` contacts are read already.
+    void readAll(StepResult& result, std::size_t read);
 
     std::unique_ptr<Device> m_device;
     Settings m_settings;
@@ -99,5 +105,6 @@ private:
     std::size_t m_testsBefore = SIZE_MAX, m_contactsBefore = SIZE_MAX;
     std::unique_ptr<Staging<Contact>> m_contactsRead;  // behind a head as on the device
     std::size_t m_contactsAsked = 0;
+    ContactPlace m_place = ContactPlace::Host;  // the place of the contacts
 };
 }  // namespace drape

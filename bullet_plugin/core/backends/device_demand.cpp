@@ -117,6 +117,7 @@ bool DeviceBackend::finish(const Scene& scene, const StepPairs& pairs, StepResul
         if (!grown && !skipped) break;
         if (m_limitReached) return false;
         if (grown) ++statistics.m_retries;
+        result.m_isRepeated = true;
         takeCounts(countersRead());
         enqueueStep(scene, pairs);
         m_device->wait();
@@ -124,14 +125,23 @@ bool DeviceBackend::finish(const Scene& scene, const StepPairs& pairs, StepResul
     if (m_device->failed()) return false;
     takeCounts(countersRead());
     writeCounts(countersRead(), statistics);
-    readAll(result);
+    result.m_countOnDevice = countersRead().m_contactsStored;
+    result.m_isOnDevice = m_place == ContactPlace::Device;
+    if (!result.m_isOnDevice) readAll(result, m_contactsAsked);
     return !m_device->failed();
 }
 
-void DeviceBackend::readAll(StepResult& result)
+bool DeviceBackend::bringContacts(StepResult& result)
 {
-    const std::size_t count = countersRead().m_contactsStored;
-    if (count > m_contactsAsked)
+    readAll(result, 0);
+    result.m_isOnDevice = false;
+    return !m_device->failed();
+}
+
+void DeviceBackend::readAll(StepResult& result, std::size_t read)
+{
+    const std::size_t count = result.m_countOnDevice;
+    if (count > read)
     {
         m_contactsRead->reserve(m_device.get(), DRAPE_CONTACT_HEAD + withHeadroom(count));
         readContacts(count);

@@ -16,6 +16,9 @@ struct StepResult
 {
     std::vector<Contact> m_contacts;  // the host's contacts
     ContactList m_deviceContacts;     // the device back end's memory, until its next step
+    bool m_isOnDevice = false;        // the contacts stayed on the device; the lists are empty
+    std::size_t m_countOnDevice = 0;  // their number
+    bool m_isRepeated = false;        // the step ran more than once
     // More candidates or contacts than the limits allow; only m_contactDemand of the result is valid then.
     bool m_overLimit = false;
     bool m_overTests = false;           // these are the limits of StepPairs

@@ -159,6 +159,7 @@ void Device::flush()
 void Device::wait()
 {
     if (m_queue() == nullptr) return;
+    ++m_waits;
     check(m_queue.finish(), "clFinish");  // after a failure, too: transfers from before it may be under way
 }
 }  // namespace drape

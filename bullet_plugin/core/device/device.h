@@ -51,6 +51,8 @@ public:
     void flush();
     // Waits for all work enqueued so far.
     void wait();
+    // Returns the number of calls of wait().
+    std::size_t waits() const { return m_waits; }
 
     // Number of buffers made so far: while it is unchanged, a handle stands for the same buffer.
     std::size_t bufferCount() const { return m_bufferCount; }
@@ -69,6 +71,7 @@ private:
     std::size_t m_maxAllocationBytes = 0;
     std::size_t m_bufferCount = 0;
     std::size_t m_computeUnits = 1;
+    std::size_t m_waits = 0;
     std::unique_ptr<Profiler> m_profiler;
     MemoryLedger m_memory;
     Error m_error;

@@ -81,6 +81,11 @@ private:
 };
 }  // namespace
 
+bool hasOneSided(const Scene& scene)
+{
+    return OneSidedObstacles(scene).any();
+}
+
 void removeBackContacts(const Scene& scene, StepResult& result)
 {
     const OneSidedObstacles obstacles(scene);

@@ -8,5 +8,7 @@
 
 namespace drape
 {
+// Returns whether there is such an obstacle. O(obstacles).
+bool hasOneSided(const Scene& scene);
 void removeBackContacts(const Scene& scene, StepResult& result);
 }  // namespace drape

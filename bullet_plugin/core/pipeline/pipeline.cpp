@@ -4,6 +4,7 @@
 #include <cassert>
 
 #include "back_contacts.h"
+#include "bullet_plugin/core/backends/device_backend.h"
 #include "bullet_plugin/core/check_settings.h"
 #include "bullet_plugin/core/queries/mesh_probe.h"
 #include "bullet_plugin/core/scene/check_indices.h"
@@ -27,6 +28,7 @@ struct Pipeline::Implementation
         m_nodes.forget();
         m_scene.join(m_backends.device());
     }
+    bool mayStay();
 
     const Settings m_settings;
     const std::shared_ptr<ThreadTeam> m_threads;
@@ -38,6 +40,7 @@ struct Pipeline::Implementation
     StepRunner m_runner{m_backends, m_settings, m_scene, m_pairs};
     StepResult m_result;
     StepStatistics m_statistics;
+    ContactPlace m_place = ContactPlace::Host;
     bool m_submitted = false;
 };
 
@@ -191,7 +194,13 @@ void Pipeline::addSelf(MeshId cloth)
     m_implementation->m_input.addSelf(cloth);
 }
 
-void Pipeline::submit()
+// Returns whether a step's contacts may stay on the device.
+bool Pipeline::Implementation::mayStay()
+{
+    return m_backends.chosenDevice() && m_pairs.m_any && !m_pairs.m_anySelf && !hasOneSided(m_scene);
+}
+
+void Pipeline::submit(ContactPlace place)
 {
     Implementation& self = *m_implementation;
     Stopwatch watch;
@@ -200,12 +209,20 @@ void Pipeline::submit()
     self.m_backends.choose(self.m_scene, self.m_input);
     self.m_input.collect(self.m_scene, self.m_settings.m_activation, self.m_pairs, self.m_statistics);
     self.m_submitted = true;
-    self.m_runner.submit(self.m_nodes.sent());
+    self.m_place = self.mayStay() ? place : ContactPlace::Host;
+    self.m_runner.submit(self.m_place, self.m_nodes.sent());
     if (self.m_pairs.m_any && self.m_backends.chosenDevice())
         self.m_nodes.passToStep();
     else
         self.m_nodes.forget();
     self.m_statistics.m_uploadMs = watch.lapMs();
+}
+
+DeviceContacts Pipeline::contactsOnDevice()
+{
+    Implementation& self = *m_implementation;
+    const bool stay = self.m_submitted && self.m_place == ContactPlace::Device && self.m_backends.chosenDevice();
+    return stay ? self.m_backends.chosenDevice()->contactsOnDevice() : DeviceContacts();
 }
 
 ContactList Pipeline::finish(const Allowance& allowance)
@@ -221,10 +238,30 @@ ContactList Pipeline::finish(const Allowance& allowance)
     self.m_submitted = false;
     removeBackContacts(self.m_scene, self.m_result);
     statistics.m_selfContacts = self.m_result.selfContacts().size();
-    statistics.m_contacts = self.m_result.contacts().size();
+    statistics.m_contacts =
+        self.m_result.m_isOnDevice ? self.m_result.m_countOnDevice : self.m_result.contacts().size();
     if (statistics.m_invalidNodes > 0) statistics.m_status |= kStepInvalidNodes;
     if (self.m_backends.deviceFailed()) statistics.m_status |= kStepDeviceFailed;
     statistics.m_waitMs = watch.lapMs();
+    return self.m_result.contacts();
+}
+
+bool Pipeline::areContactsOnDevice() const
+{
+    return m_implementation->m_result.m_isOnDevice;
+}
+
+bool Pipeline::ranOnce() const
+{
+    return !m_implementation->m_result.m_isRepeated;
+}
+
+ContactList Pipeline::bringContacts()
+{
+    Implementation& self = *m_implementation;
+    Stopwatch watch;
+    if (self.m_result.m_isOnDevice) self.m_runner.bringContacts(self.m_result, self.m_statistics);
+    self.m_statistics.m_waitMs += watch.lapMs();
     return self.m_result.contacts();
 }
 
@@ -265,6 +302,12 @@ const std::shared_ptr<ThreadTeam>& Pipeline::threads() const
 SolveStage* Pipeline::solveStage(std::size_t nodes)
 {
     return m_implementation->m_backends.solveStage(nodes);
+}
+
+std::size_t Pipeline::deviceWaits() const
+{
+    const Device* const device = m_implementation->m_backends.device();
+    return device ? device->waits() : 0;
 }
 
 bool Pipeline::deviceFailed() const

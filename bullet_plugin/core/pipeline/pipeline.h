@@ -112,14 +112,24 @@ public:
     // are swept over the step like contacts with obstacles (Settings::m_mode); see kernels/lib/self_contact.h.
     void addSelf(MeshId cloth);
 
-    // Enqueues the step for the pairs named since the last finish(); returns without waiting.
-    void submit();
+    // Enqueues the step for the pairs named since the last finish(); returns without waiting. place: Device asks that
+    // the contacts stay on the device that finds them, for commands enqueued behind the step. The host's own contacts,
+    // and those of a step with one-sided obstacles or cloths that collide with themselves, go to the host.
+    void submit(ContactPlace place = ContactPlace::Host);
+    // Returns the submitted step's list on the device; an empty one if contacts go to the host.
+    DeviceContacts contactsOnDevice();
     // Waits, grows buffers and repeats where needed. Contacts are valid until the next submit().
     // allowance: returns a factor on the tests that a cloth's ordinary motion needs (ordinary_tests.h), if a step needs
     // more. Infinity for cloth that keeps its size; little for cloth that came apart or whose pins were displaced.
     // Cloths that need more are left out. Null: infinity.
     using Allowance = std::function<float(MeshId)>;
     ContactList finish(const Allowance& allowance = nullptr);
+    // Returns whether the contacts of the last finish() are on the device alone; its list is empty then.
+    bool areContactsOnDevice() const;
+    // Returns whether the last step ran once: commands enqueued behind it found its contacts.
+    bool ranOnce() const;
+    // Returns the list that finish() would have returned. Waits if the contacts are on the device.
+    ContactList bringContacts();
     // Returns contacts of cloths with themselves of the last finish(), in canonical order; valid as long as its other
     // contacts.
     ContactList selfContacts() const;
@@ -138,6 +148,8 @@ public:
     // Returns the stage that solves cloths on a device; null if the host should (Settings::m_solverPlace). nodes: the
     // number in all cloths.
     SolveStage* solveStage(std::size_t nodes);
+    // Returns how often the host has waited for the device; 0 without one.
+    std::size_t deviceWaits() const;
     // Returns whether a device failed, so that the host runs every step from then on.
     bool deviceFailed() const;
     // Returns the message of the device's failure if the status reports one, or of the mesh that was refused since.

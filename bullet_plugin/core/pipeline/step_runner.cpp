@@ -9,10 +9,20 @@
 
 namespace drape
 {
-void StepRunner::submit(std::size_t sent)
+void StepRunner::submit(ContactPlace place, std::size_t sent)
 {
     if (!m_pairs.m_any) return;
-    if (DeviceBackend* const device = m_backends.chosenDevice()) device->submit(m_scene, m_pairs, sent);
+    if (DeviceBackend* const device = m_backends.chosenDevice()) device->submit(m_scene, m_pairs, place, sent);
+}
+
+void StepRunner::bringContacts(StepResult& result, StepStatistics& statistics)
+{
+    DeviceBackend* const device = m_backends.chosenDevice();
+    if (device && device->bringContacts(result)) return;
+    if (device) m_backends.leaveDevice();
+    result.clear();
+    m_backends.host().run(m_scene, m_pairs, result, statistics);
+    statistics.m_onHost = true;
 }
 
 void StepRunner::finish(const Pipeline::Allowance& allowance, StepResult& result, StepStatistics& statistics)
@@ -29,6 +39,7 @@ void StepRunner::finish(const Pipeline::Allowance& allowance, StepResult& result
             leaveOutCloths(result.m_contactDemand);
         submit();
     }
+    result.m_isRepeated = result.m_isRepeated || !m_leftOut.empty();
     m_neededMore = statistics.m_candidates > ordinary.m_tests || statistics.m_sweptTests > ordinary.m_swept;
     statistics.m_candidates += m_leftOutTests;
     statistics.m_clothsLeftOut = m_leftOut.size();

@@ -23,10 +23,13 @@ public:
     {
     }
 
-    // Enqueues the step if the device runs it. sent: number of the cloths' first nodes that are uploaded already.
-    void submit(std::size_t sent = 0);
+    // Enqueues the step if the device runs it. place: where its contacts go. sent: number of the cloths' first nodes
+    // that are uploaded already.
+    void submit(ContactPlace place = ContactPlace::Host, std::size_t sent = 0);
     // Waits for the step, and repeats it where needed.
     void finish(const Pipeline::Allowance& allowance, StepResult& result, StepStatistics& statistics);
+    // Brings contacts that stayed on the device to the host. If the device fails, the host finds them.
+    void bringContacts(StepResult& result, StepStatistics& statistics);
     // Returns the cloths that the last finish() left out.
     const std::vector<MeshId>& clothsLeftOut() const { return m_leftOut; }
     // Ends a step in which there is nothing to do.

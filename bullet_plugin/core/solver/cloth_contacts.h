@@ -38,7 +38,7 @@ struct ClothContacts
     const FeatureOrder* m_order = nullptr;  // the caller's; null for a cloth without contacts
     SolverNodes m_nodes;
     std::vector<FeatureContacts> m_features;  // in canonical order
-    bool m_leavesOut = false;                 // m_features lacks contacts that the detection found
+    bool m_isFiltered = false;                // m_features are not all of the detection's contacts and no others
     std::vector<ClothObstacle> m_obstacles;   // in the order of the limit's regions
     MotionLimit m_limit;
     float m_leastThickness = std::numeric_limits<float>::infinity(), m_mostThickness = 0;  // m, over the cloth's pairs
@@ -57,7 +57,7 @@ struct ClothContacts
         m_leastThickness = std::numeric_limits<float>::infinity();
         m_mostThickness = 0;
         m_features.clear();
-        m_leavesOut = false;
+        m_isFiltered = false;
         m_obstacles.clear();
         m_limit.clear();
         m_mayHavePassed = false;

@@ -29,11 +29,20 @@ public:
     {
         m_pipeline = &pipeline;
         m_list = list;
+        m_onDevice = DeviceContacts();
+    }
+    // Sets the pipeline, and a list on its device that commands may read. No contact can be resolved.
+    void setOnDevice(const Pipeline& pipeline, DeviceContacts onDevice)
+    {
+        setPipeline(pipeline, ContactList());
+        m_onDevice = onDevice;
     }
     // Returns the pipeline; null before setPipeline().
     const Pipeline* pipeline() const { return m_pipeline; }
     // All contacts of the detection, those of addOwn() excepted.
     ContactList list() const { return m_list; }
+    // The detection's list on the device; empty if list() is on the host.
+    DeviceContacts onDevice() const { return m_onDevice; }
     // Returns what contacts with an obstacle have in common; resolve() returns it for each.
     const ObstacleSurface& surfaceOf(MeshId obstacle) const { return m_surfaces.at(obstacle); }
     void nameObstacle(MeshId obstacle, const ObstacleSurface& surface) { m_surfaces[obstacle] = surface; }
@@ -53,6 +62,7 @@ public:
 private:
     const Pipeline* m_pipeline = nullptr;
     ContactList m_list;
+    DeviceContacts m_onDevice;
     std::unordered_map<MeshId, ObstacleSurface> m_surfaces;
     std::unordered_map<MeshId, const Vec3*> m_carriedStarts;  // by cloth
     std::vector<SolverContact> m_own;

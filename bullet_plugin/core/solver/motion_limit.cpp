@@ -80,14 +80,14 @@ void MotionLimit::keepNear(SolverNodes& nodes, std::size_t node) const
         bringBack(nodes, node, vec3(0, 0, 0), nodes.way(node), m_leastTolerance, m_leastTolerance);
 }
 
-float MotionLimit::mostCarried(const SolverNodes& nodes) const
+float MotionLimit::mostCarried(const SolverNodes& nodes, Carried which) const
 {
     float most2 = 0;
     for (const Region& region : m_regions)
     {
         for (std::size_t i = 0; region.m_carry.moves() && i < nodes.count(); ++i)
         {
-            if (!m_hasContact[i]) continue;
+            if (which == Carried::ContactNodes && !m_hasContact[i]) continue;
             const Vec3 carried = vec3Sub(region.m_carry.start(i, nodes.start(i)), nodes.start(i));
             most2 = std::max(most2, vec3Dot(carried, carried));
         }

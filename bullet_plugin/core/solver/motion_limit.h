@@ -76,8 +76,13 @@ public:
     // Returns whether all obstacles rest. keepNear() then replaces apply() for a node with contacts, wherever the
     // other nodes are.
     bool obstaclesRest() const { return !m_anyMoves; }
-    // Returns how far the obstacles' motion in the step carries a node of a contact at most, m.
-    float mostCarried(const SolverNodes& nodes) const;
+    // Returns how far the obstacles' motion in the step carries a node at most, m: one of a contact, or any.
+    enum class Carried
+    {
+        ContactNodes,
+        AllNodes
+    };
+    float mostCarried(const SolverNodes& nodes, Carried which = Carried::ContactNodes) const;
     // Limits a node while the obstacles rest, if it has contacts: it stays within the path tolerance of the thinnest
     // pair.
     void keepNear(SolverNodes& nodes, std::size_t node) const;

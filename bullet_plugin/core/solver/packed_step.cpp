@@ -13,21 +13,18 @@ namespace
 constexpr int kMostSubsteps = 0xfff0;  // a record of pushes has 16 bits for the stage
 }  // namespace
 
-bool PackedStep::fits(const SolverCloth& cloth, const ContactSource& source)
+bool PackedStep::fits(const SolverCloth& cloth)
 {
     const ClothContacts& contacts = *cloth.m_contacts;
-    if (!cloth.m_substeps || cloth.m_rigid || !contacts.m_limit.faces()) return false;
+    if (!cloth.m_substeps || cloth.m_rigid || !contacts.m_limit.faces() || contacts.m_isFiltered) return false;
     // Links and contacts of a large cloth must have the same groups.
     if (contacts.m_parts->leafCount() > 1 && cloth.m_substeps->links().partsRevision() != contacts.m_parts->revision())
         return false;
     if (contacts.m_order && contacts.m_order->anyUncoloured()) return false;
     if (cloth.m_substeps->count() > kMostSubsteps) return false;
-    for (const MotionLimit::Region& region : contacts.m_limit.regions())
-        if (region.m_carry.m_starts) return false;
-    if (contacts.m_features.empty()) return true;
-    // Contacts of the caller's own come first.
-    const Contact* const first = contacts.m_features.front().m_contacts;
-    return !contacts.m_leavesOut && first >= source.list().begin() && first < source.list().end();
+    const std::vector<MotionLimit::Region>& regions = contacts.m_limit.regions();
+    return std::none_of(regions.begin(), regions.end(),
+                        [](const MotionLimit::Region& region) { return region.m_carry.m_starts != nullptr; });
 }
 
 void PackedStep::packRegions(const ClothContacts& contacts, const ContactSource& source, SolveCloth& cloth)
@@ -92,10 +89,12 @@ void PackedStep::packCloth(std::size_t index, const ContactSource& source)
     cloth.m_nearDistance = kNearShare * contacts.m_leastThickness;
     cloth.m_sure = limit.sureDistance();
     cloth.m_leastTolerance = limit.leastTolerance();
-    if (!contacts.m_features.empty())
+    if (!contacts.m_obstacles.empty())
     {
         cloth.m_margin = levelMargin(contacts);
-        cloth.m_retreat = limit.mostCarried(contacts.m_nodes);
+        const bool isKnown = !source.onDevice().m_list;
+        cloth.m_retreat = limit.mostCarried(
+            contacts.m_nodes, isKnown ? MotionLimit::Carried::ContactNodes : MotionLimit::Carried::AllNodes);
     }
     packRegions(contacts, source, cloth);
     m_clothRecords.push_back(cloth);
@@ -105,7 +104,10 @@ void PackedStep::packCloth(std::size_t index, const ContactSource& source)
 void PackedStep::layOut(const ContactSource& source, SolveStage& stage)
 {
     SolveLayout& layout = m_step.m_layout;
-    const std::size_t nodes = m_topology.nodeCount(), cloths = m_clothRecords.size(), contacts = source.list().size();
+    const std::size_t nodes = m_topology.nodeCount(), cloths = m_clothRecords.size();
+    m_step.m_contacts = source.list();
+    m_step.m_onDevice = source.onDevice();
+    const std::size_t contacts = m_step.m_onDevice.m_list ? m_step.m_onDevice.m_room : m_step.m_contacts.size();
     WordPlaces input, work;
     layout.m_cloths = input.add<SolveCloth>(cloths);
     layout.m_givenPaths = input.add<NodePath>(nodes);
@@ -147,8 +149,6 @@ void PackedStep::layOut(const ContactSource& source, SolveStage& stage)
         copyToWords(words, layout.m_givenAccelerations + first * sizeof(Vec3) / sizeof(*words),
                     m_cloths[i].m_substeps->accelerations(), cloth.count());
     }
-    m_step.m_contacts = source.list().begin();
-    m_step.m_contactCount = contacts;
 }
 
 // Counts what the passes over large cloths need.
@@ -195,12 +195,24 @@ void PackedStep::pack(const std::vector<SolverCloth>& cloths, const ContactSourc
     describeLaunches();
 }
 
+const SolveResult* PackedStep::resultsIn(const SolveWorkWord* words) const
+{
+    return reinterpret_cast<const SolveResult*>(words + (m_step.m_layout.m_results - m_step.m_clearedWords));
+}
+
+bool PackedStep::mustRepeat(const SolveWorkWord* words) const
+{
+    const SolveResult* const results = resultsIn(words);
+    return std::any_of(results, results + m_cloths.size(),
+                       [](const SolveResult& result) { return result.m_meets != 0 || result.m_refused != 0; });
+}
+
 void PackedStep::unpack(const SolveWorkWord* words, std::vector<SolverCloth>& refused) const
 {
     const SolveLayout& layout = m_step.m_layout;
     const std::vector<std::uint32_t>& places = m_topology.places();
     const auto at = [&](std::uint32_t place) { return words + (place - m_step.m_clearedWords); };
-    const auto* const results = reinterpret_cast<const SolveResult*>(at(layout.m_results));
+    const SolveResult* const results = resultsIn(words);
     const auto* const ends = reinterpret_cast<const SolverNode*>(at(layout.m_nodes));
     const auto* const states = reinterpret_cast<const NodeState*>(at(layout.m_states));
     for (std::size_t i = 0; i < m_cloths.size(); ++i)

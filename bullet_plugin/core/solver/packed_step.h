@@ -17,11 +17,13 @@ class PackedStep
 public:
     // Returns whether a device can solve the cloth: the core has its links, and its contacts are the detection's own
     // with obstacles that rest or move as rigid bodies.
-    static bool fits(const SolverCloth& cloth, const ContactSource& source);
+    static bool fits(const SolverCloth& cloth);
 
     // Packs cloths that fit. They must stay in place until unpack().
     void pack(const std::vector<SolverCloth>& cloths, const ContactSource& source, SolveStage& stage);
     const SolveStep& step() const { return m_step; }
+    // Returns whether the cloths must be solved again: a path meets a surface, or the device could not solve one.
+    bool mustRepeat(const SolveWorkWord* words) const;
     // Gives the cloths' nodes the device's result. Adds the cloths that it could not solve to `refused`.
     void unpack(const SolveWorkWord* words, std::vector<SolverCloth>& refused) const;
 
@@ -30,6 +32,7 @@ private:
     void packRegions(const ClothContacts& contacts, const ContactSource& source, SolveCloth& cloth);
     void layOut(const ContactSource& source, SolveStage& stage);
     void describeLaunches();
+    const SolveResult* resultsIn(const SolveWorkWord* words) const;
 
     std::vector<SolverCloth> m_cloths;
     PackedTopology m_topology;

@@ -41,15 +41,20 @@ void SolveStage::upload(const SolveStep& step)
         m_topology.reserve(device, step.m_topologyWords);
         m_topology.write(device, step.m_topology, step.m_topologyWords);
     }
-    StepCounters counters = {};
-    counters.m_contactsStored = std::uint32_t(step.m_contactCount);
-    static_assert(sizeof(counters) <= sizeof(m_head) * DRAPE_CONTACT_HEAD && DRAPE_CONTACT_HEAD == 1);
-    std::memcpy(&m_head, &counters, sizeof(counters));
-    m_contacts.reserve(device, DRAPE_CONTACT_HEAD + step.m_contactCount);
-    m_contacts.write(device, &m_head, DRAPE_CONTACT_HEAD);
-    m_contacts.write(device, step.m_contacts, step.m_contactCount, DRAPE_CONTACT_HEAD);
+    if (!isOnDevice()) uploadContacts(step.m_contacts);
     if (m_work.capacity() < step.m_workWords) m_work.reserve(device, step.m_workWords + step.m_workWords / 4);
     m_work.fill(device, 0, step.m_clearedWords);
+}
+
+void SolveStage::uploadContacts(const ContactList& contacts)
+{
+    StepCounters counters = {};
+    counters.m_contactsStored = std::uint32_t(contacts.size());
+    static_assert(sizeof(counters) <= sizeof(m_head) * DRAPE_CONTACT_HEAD && DRAPE_CONTACT_HEAD == 1);
+    std::memcpy(&m_head, &counters, sizeof(counters));
+    m_contacts.reserve(*m_device, DRAPE_CONTACT_HEAD + contacts.size());
+    m_contacts.write(*m_device, &m_head, DRAPE_CONTACT_HEAD);
+    m_contacts.write(*m_device, contacts.begin(), contacts.size(), DRAPE_CONTACT_HEAD);
 }
 
 // Takes the nodes' paths, and sorts the contacts.
@@ -59,14 +64,16 @@ void SolveStage::orderContacts(const SolveStep& step)
     const auto launch = [&](auto& kernel, std::size_t items)
     {
         kernel.launch(device, listWidth(device, items), listGroup(device), step.m_layout, m_input, m_topology,
-                      m_contacts, m_work);
+                      contacts(), m_work);
     };
     launch(m_takePaths, step.m_layout.m_nodeCount);
     if (!hasContacts()) return;
-    launch(m_countContacts, step.m_contactCount);
+    const std::size_t count =
+        std::max(isOnDevice() ? step.m_onDevice.m_expected : step.m_contacts.size(), std::size_t(1));
+    launch(m_countContacts, count);
     launch(m_placeBuckets, step.m_layout.m_bucketCount);
-    launch(m_gatherContacts, step.m_contactCount);
-    launch(m_prepareContacts, step.m_contactCount);
+    launch(m_gatherContacts, count);
+    launch(m_prepareContacts, count);
 }
 
 template <class Kernel>
@@ -75,7 +82,7 @@ void SolveStage::solveWhole(Kernel& kernel, std::size_t gpuGroup, const SolveRan
     const std::size_t group = m_device->isGpu() ? gpuGroup : DRAPE_SOLVE_CPU_GROUP;
     SolvePass pass = {};
     pass.m_firstGroup = groups.m_first;
-    kernel.launch(*m_device, groups.m_count * group, group, m_step->m_layout, m_input, m_topology, m_contacts, m_work,
+    kernel.launch(*m_device, groups.m_count * group, group, m_step->m_layout, m_input, m_topology, contacts(), m_work,
                   pass, m_step->m_mostNodes, m_step->m_mostNodes);
 }
 
@@ -87,7 +94,7 @@ void SolveStage::passNodes(SolvePass pass)
     std::size_t groups = m_step->m_levels.front().m_groups.m_count;
     for (std::size_t i = 1; pass.m_pass == DRAPE_PASS_BEGIN && i < m_step->m_levels.size(); ++i)
         groups += m_step->m_levels[i].m_groups.m_count;
-    m_passNodes.launch(*m_device, groups * group, group, m_step->m_layout, m_input, m_topology, m_contacts, m_work,
+    m_passNodes.launch(*m_device, groups * group, group, m_step->m_layout, m_input, m_topology, contacts(), m_work,
                        pass);
 }
 
@@ -106,10 +113,10 @@ void SolveStage::passLevels(SolvePass pass)
         pass.m_firstGroup = level.m_groups.m_first;
         if (isSweep && &level == &m_step->m_levels.front())
             m_sweepLeaves.launch(*m_device, level.m_groups.m_count * leaf, leaf, m_step->m_layout, m_input, m_topology,
-                                 m_contacts, m_work, pass, m_step->m_mostNodes, m_step->m_mostNodes);
+                                 contacts(), m_work, pass, m_step->m_mostNodes, m_step->m_mostNodes);
         else
             m_sweepGroups.launch(*m_device, level.m_groups.m_count * join, join, m_step->m_layout, m_input, m_topology,
-                                 m_contacts, m_work, pass);
+                                 contacts(), m_work, pass);
     }
 }
 
@@ -233,13 +240,16 @@ bool SolveStage::anyOpen() const
 {
     const SolveWorkWord* const words = m_resultRead->data() + (m_step->m_layout.m_results - m_step->m_clearedWords);
     const auto* const results = reinterpret_cast<const SolveResult*>(words);
-    return std::any_of(results, results + m_step->m_clothCount,
-                       [](const SolveResult& result) { return result.m_isOpen != 0; });
+    const bool anyMeets = isOnDevice() && std::any_of(results, results + m_step->m_clothCount,
+                                                      [](const SolveResult& result) { return result.m_meets != 0; });
+    return !anyMeets && std::any_of(results, results + m_step->m_clothCount,
+                                    [](const SolveResult& result) { return result.m_isOpen != 0; });
 }
 
-const SolveWorkWord* SolveStage::finish()
+const SolveWorkWord* SolveStage::finish(bool hasWaited)
 {
-    for (m_device->wait(); !m_device->failed() && anyOpen(); m_device->wait())
+    if (!hasWaited) m_device->wait();
+    for (; !m_device->failed() && anyOpen(); m_device->wait())
     {
         const std::uint32_t done = m_sweeps;
         close(done, done + kMoreSweeps);

@@ -4,11 +4,13 @@
 // all such cloths in one launch (solve_cloths.cl). Larger cloths take launches for each pass of the step, with a
 // work-group for each group of a level: leaves in local memory, then the levels above (solve_groups.cl). Launches do
 // not depend on the number of cloths. Input: a packed step. Output: the nodes' displacements and states, and a result
-// by cloth, as the host's solver would give them, bit for bit. Cost: one submission and one wait, or more where
+// by cloth, as the host's solver would give them, bit for bit. The contacts are the host's, or those that a detection
+// leaves on the device; its step and the solver's then have one wait. Cost: one submission and one wait, or more where
 // contacts of a large cloth need many closing sweeps. Errors: in the device.
 #pragma once
 
 #include "bullet_plugin/core/device/bound_kernel.h"
+#include "bullet_plugin/core/ordering/contact_list.h"
 #include "kernels/lib/closing_sweeps.h"
 #include "kernels/solver/solver_bindings.h"
 #include "packed_topology.h"
@@ -25,8 +27,8 @@ struct SolveStep
     // Null: the topology of the last step.
     const SolveTopologyWord* m_topology = nullptr;
     std::size_t m_topologyWords = 0;
-    const Contact* m_contacts = nullptr;
-    std::size_t m_contactCount = 0;
+    ContactList m_contacts;
+    DeviceContacts m_onDevice;  // instead of them, unless its list is null
     std::size_t m_clothCount = 0;
     std::size_t m_mostNodes = 0;     // nodes of the largest leaf
     std::size_t m_clearedWords = 0;  // words at the start of the working memory that begin as 0
@@ -53,8 +55,9 @@ public:
     SolveInputWord* input(std::size_t words);
     // Returns after enqueueing.
     void submit(const SolveStep& step);
-    // Waits. Returns the words that were read back, null if the device failed. They stay until the next submit().
-    const SolveWorkWord* finish();
+    // Waits, unless the caller has. Returns the words that were read back, null if the device failed. They stay until
+    // the next submit(). A step that SolveResult::m_meets says must be solved again is not finished.
+    const SolveWorkWord* finish(bool hasWaited = false);
     // Releases memory that only earlier, larger steps needed. Waits.
     void giveBackRoom();
 
@@ -64,6 +67,7 @@ private:
     static_assert(DRAPE_CLOSING_SWEEPS == DRAPE_LEAST_CLOSING + DRAPE_MOST_FURTHER);
 
     void upload(const SolveStep& step);
+    void uploadContacts(const ContactList& contacts);
     void orderContacts(const SolveStep& step);
     template <class Kernel>
     void solveWhole(Kernel& kernel, std::size_t gpuGroup, const SolveRange& groups);
@@ -75,7 +79,9 @@ private:
     void endLarge(std::uint32_t sweeps);
     void readResults();
     bool anyOpen() const;
-    bool hasContacts() const { return m_step->m_contactCount > 0; }
+    bool isOnDevice() const { return m_step->m_onDevice.m_list != nullptr; }
+    bool hasContacts() const { return isOnDevice() || m_step->m_contacts.size() > 0; }
+    Buffer<Contact>& contacts() { return isOnDevice() ? *m_step->m_onDevice.m_list : m_contacts; }
 
     Device* m_device = nullptr;
     std::uint64_t m_revision = newRevision();

@@ -337,16 +337,42 @@ std::size_t StepSolver::solve(const std::vector<SolverCloth>& cloths, const std:
     return onDevice;
 }
 
-std::size_t StepSolver::solveAll(const std::vector<SolverCloth>& cloths, const std::vector<SolverCloth>& free,
-                                 const ContactSource& source, SolveStage* stage)
+void StepSolver::divide(const std::vector<SolverCloth>& cloths, const std::vector<SolverCloth>& free,
+                        const SolveStage* stage)
 {
     m_onDevice.clear();
     m_onHost.clear();
     m_freeOnHost.clear();
     for (const SolverCloth& cloth : cloths)
-        (stage && PackedStep::fits(cloth, source) ? m_onDevice : m_onHost).push_back(cloth);
+        (stage && PackedStep::fits(cloth) ? m_onDevice : m_onHost).push_back(cloth);
     for (const SolverCloth& cloth : free)
-        (stage && PackedStep::fits(cloth, source) ? m_onDevice : m_freeOnHost).push_back(cloth);
+        (stage && PackedStep::fits(cloth) ? m_onDevice : m_freeOnHost).push_back(cloth);
+}
+
+bool StepSolver::submitBehind(const std::vector<SolverCloth>& cloths, const std::vector<SolverCloth>& free,
+                              const ContactSource& source, SolveStage& stage)
+{
+    divide(cloths, free, &stage);
+    if (m_onDevice.empty() || !m_onHost.empty() || !m_freeOnHost.empty()) return false;
+    m_packed.pack(m_onDevice, source, stage);
+    stage.submit(m_packed.step());
+    return true;
+}
+
+bool StepSolver::finishBehind(const std::vector<SolverCloth>& cloths, const std::vector<SolverCloth>& free,
+                              SolveStage& stage)
+{
+    const SolveWorkWord* const result = stage.finish(true);
+    if (!result || m_packed.mustRepeat(result)) return false;
+    m_packed.unpack(result, m_refused);
+    keepMomenta(cloths, free);
+    return true;
+}
+
+std::size_t StepSolver::solveAll(const std::vector<SolverCloth>& cloths, const std::vector<SolverCloth>& free,
+                                 const ContactSource& source, SolveStage* stage)
+{
+    divide(cloths, free, stage);
     if (m_onDevice.empty())
     {
         solveOnHost(m_onHost, m_freeOnHost, source);

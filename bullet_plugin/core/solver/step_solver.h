@@ -63,6 +63,13 @@ public:
     // If the device fails, the host solves them all. Returns the number of cloths that the device solved.
     std::size_t solve(const std::vector<SolverCloth>& cloths, const std::vector<SolverCloth>& free,
                       const ContactSource& source, SolveStage* stage = nullptr);
+    // Enqueues the whole step of the cloths behind a detection whose contacts stay on the device. Returns false, with
+    // nothing enqueued, if the device cannot solve all of them.
+    bool submitBehind(const std::vector<SolverCloth>& cloths, const std::vector<SolverCloth>& free,
+                      const ContactSource& source, SolveStage& stage);
+    // Takes over the results after the wait for that detection, which must have run once. Returns false, with the nodes
+    // as they were, if solve() must solve the step: a path meets a surface, or the device failed.
+    bool finishBehind(const std::vector<SolverCloth>& cloths, const std::vector<SolverCloth>& free, SolveStage& stage);
     // Runs the closing sweeps alone, for cloths whose nodes are at the ends of the paths along which their contacts
     // were found.
     void close(const std::vector<SolverCloth>& cloths, const ContactSource& source);
@@ -79,6 +86,8 @@ private:
 
     std::size_t solveAll(const std::vector<SolverCloth>& cloths, const std::vector<SolverCloth>& free,
                          const ContactSource& source, SolveStage* stage);
+    // Divides the cloths among the device and the host.
+    void divide(const std::vector<SolverCloth>& cloths, const std::vector<SolverCloth>& free, const SolveStage* stage);
     void keepMomenta(const std::vector<SolverCloth>& cloths, const std::vector<SolverCloth>& free);
     void solveOnHost(const std::vector<SolverCloth>& cloths, const std::vector<SolverCloth>& free,
                      const ContactSource& source);

@@ -136,7 +136,8 @@ struct StepParts
     double m_predictMs = 0;
     // Time for copying nodes for the detection and for enqueueing.
     double m_uploadMs = 0;
-    // Time spent waiting for the device and for its contacts; all of the detection on the host back end.
+    // Time spent waiting for the device and for its contacts; all of the detection on the host back end. Where the
+    // device solves a step behind its detection, the wait is for both.
     double m_waitMs = 0;
     // Part of m_waitMs for refitting; host back end only.
     double m_refitMs = 0;
@@ -186,6 +187,9 @@ struct StepStatistics : StepCounts, StepParts
     std::size_t m_clothsSkipped = 0;
     // Cloths whose links and contacts an OpenCL device solved (Settings::m_solverPlace).
     std::size_t m_clothsOnDevice = 0;
+    // Times that the host waited for the device. Once, if the device solves all cloths of the step and no path of a
+    // node meets a surface.
+    std::size_t m_deviceWaits = 0;
     // Obstacles of the step's pairs that were not built, refitted or moved.
     std::size_t m_obstaclesKept = 0;
     // True if there was nothing to do: no pair, or nothing that could touch.

@@ -54,6 +54,7 @@ private:
     void reserveSubsteps();
     void forgetRemoved();
     void leaveToBullet();
+    void chooseStage();
     void detect();
     void solveBodies(StepParts& times);
     void closeOffPath(const std::vector<BodyContacts*>& bodies);
