@@ -1,10 +1,11 @@
-// many_cloths: drops many small cloths on one obstacle and measures whole steps of Bullet, with Drape's solver on the
-// host and on a device, or with Bullet's links.
+// many_cloths: drops cloths on one obstacle and measures whole steps of Bullet, with Drape's solver on the host and on
+// a device, with nodes that stay on the device, or with Bullet's links.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <ctime>
 #include <iostream>
+#include <numeric>
 
 #include <CLI/CLI.hpp>
 #include <drape/drape.h>
@@ -26,7 +27,8 @@ struct ManyOptions : CommonOptions
 {
     std::string m_obstacle = "sphere";
     std::vector<std::string> m_methods;
-    int m_cloths = 200, m_nodes = 17, m_steps = 120;
+    int m_cloths = 200, m_nodes = 17, m_steps = 120, m_fetchEvery = 10;
+    double m_clothSize = 0.6;
     unsigned m_threads = 0;
 };
 
@@ -36,12 +38,14 @@ struct Method
     const char* m_name;
     Solver m_solver;
     SolverPlace m_place;
+    bool m_keeps;  // nodes on the device
 };
 
-constexpr Method kMethods[] = {{"host", Solver::Drape, SolverPlace::Host},
-                               {"device", Solver::Drape, SolverPlace::Device},
-                               {"auto", Solver::Auto, SolverPlace::Auto},
-                               {"bullet_links", Solver::Bullet, SolverPlace::Host}};
+constexpr Method kMethods[] = {{"host", Solver::Drape, SolverPlace::Host, false},
+                               {"device", Solver::Drape, SolverPlace::Device, false},
+                               {"kept", Solver::Drape, SolverPlace::Device, true},
+                               {"auto", Solver::Auto, SolverPlace::Auto, false},
+                               {"bullet_links", Solver::Bullet, SolverPlace::Host, false}};
 
 // Returns the median of the second half of the run, in which most cloths are in contact.
 double median(const std::vector<double>& all)
@@ -49,6 +53,24 @@ double median(const std::vector<double>& all)
     std::vector<double> values(all.begin() + std::ptrdiff_t(all.size() / 2), all.end());
     std::sort(values.begin(), values.end());
     return values[values.size() / 2];
+}
+
+// Returns the mean of the same part of the run.
+double mean(const std::vector<double>& all)
+{
+    const std::size_t first = all.size() / 2;
+    return std::accumulate(all.begin() + std::ptrdiff_t(first), all.end(), 0.0) / double(all.size() - first);
+}
+
+// Brings the nodes of all cloths to Bullet. Returns the time, ms.
+double fetchAll(Plugin& plugin, DropWorld& world, int cloths)
+{
+    const auto start = std::chrono::steady_clock::now();
+    for (int i = 0; i < cloths; ++i)
+        plugin.beginFetch(world.cloth(std::size_t(i)));
+    for (int i = 0; i < cloths; ++i)
+        plugin.fetch(world.cloth(std::size_t(i)));
+    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 }
 
 // Adds the medians of the step's parts to the row.
@@ -86,10 +108,11 @@ Row measure(const ManyOptions& options, const DropScene& scene, const Method& me
     {
         placeCloth(scene.m_cloth.m_mesh, i, options.m_cloths, moved.m_cloth.m_mesh);
         world.addCloth(moved, false);
+        if (method.m_keeps) plugin.keepOnDevice(world.cloth(std::size_t(i)), true);
     }
     std::vector<double> stepMs;
     std::vector<WholeStepParts> parts;
-    std::size_t onDevice = 0;
+    std::size_t onDevice = 0, away = 0;
     std::uint64_t hash = kEmptyHash;
     const std::clock_t cpu = std::clock();
     for (int step = 0; step < options.m_steps; ++step)
@@ -98,8 +121,12 @@ Row measure(const ManyOptions& options, const DropScene& scene, const Method& me
         const StepStatistics statistics = plugin.statistics();
         parts.push_back(partsOf(statistics, stepMs.back(), world.world().collisionMs(), statistics.callsMs()));
         onDevice = std::max(onDevice, statistics.m_clothsOnDevice);
+        away += statistics.m_clothsAway;
+        if (method.m_keeps && (step + 1) % options.m_fetchEvery == 0)
+            stepMs.back() += fetchAll(plugin, world, options.m_cloths);
     }
     const double cpuMs = 1e3 * double(std::clock() - cpu) / CLOCKS_PER_SEC / options.m_steps;
+    fetchAll(plugin, world, options.m_cloths);
     for (int i = 0; i < options.m_cloths; ++i)
         for (int k = 0; k < world.cloth(std::size_t(i)).m_nodes.size(); ++k)
             hash = hashBytes(hash, &world.cloth(std::size_t(i)).m_nodes[k].m_x, 3 * sizeof(btScalar));
@@ -110,7 +137,9 @@ Row measure(const ManyOptions& options, const DropScene& scene, const Method& me
     row["nodes"] = options.m_nodes * options.m_nodes;
     row["device"] = plugin.device().m_device.m_name;
     row["cloths_on_device"] = onDevice;
+    row["away_share"] = double(away) / options.m_cloths / options.m_steps;
     row["median_ms"] = median(stepMs);
+    row["mean_ms"] = mean(stepMs);
     row["cpu_ms"] = cpuMs;
     addParts(parts, row);
     row["hash"] = hashText(hash);
@@ -119,14 +148,17 @@ Row measure(const ManyOptions& options, const DropScene& scene, const Method& me
 
 int run(int argc, char** argv)
 {
-    CLI::App app("Measures steps of many small cloths that drop on one obstacle.", kProgram);
+    CLI::App app("Measures steps of cloths that drop on one obstacle.", kProgram);
     ManyOptions options;
     addCommonOptions(app, options);
     app.add_option("--obstacle", options.m_obstacle, "mesh file or shape, as cloth_drop takes it");
-    app.add_option("--method", options.m_methods, "host, device, auto or bullet_links; all by default");
+    app.add_option("--method", options.m_methods, "host, device, kept, auto or bullet_links; all by default");
     app.add_option("--cloths", options.m_cloths, "number of cloths")->check(CLI::Validator(wholeNumber(1, 10000), ""));
     app.add_option("--nodes", options.m_nodes, "nodes along a cloth's side")
         ->check(CLI::Validator(wholeNumber(2, 1000), ""));
+    app.add_option("--cloth-size", options.m_clothSize, "side of a cloth, m");
+    app.add_option("--fetch-every", options.m_fetchEvery, "steps after which the nodes of kept cloths are fetched")
+        ->check(CLI::Validator(wholeNumber(1, 1000000), ""));
     app.add_option("--steps", options.m_steps, "steps of 1/60 s")->check(CLI::Validator(wholeNumber(2, 1000000), ""));
     app.add_option("--threads", options.m_threads, "see cloth_drop")->check(CLI::Validator(wholeNumber(0, 64), ""));
     std::vector<std::string> names;
@@ -139,7 +171,7 @@ int run(int argc, char** argv)
     Options drop;
     drop.m_obstacle = options.m_obstacle;
     drop.m_clothColumns = drop.m_clothRows = options.m_nodes;
-    drop.m_clothSize = 0.6;
+    drop.m_clothSize = options.m_clothSize;
     DropScene scene;
     std::string error;
     if (!makeDropScene(drop, scene, error))

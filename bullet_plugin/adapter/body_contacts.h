@@ -52,6 +52,7 @@ struct BodyContacts
     bool m_heldTogether = false;         // since the last detection, see stretch.h
     bool m_obstacleJumps = false;        // an obstacle moves farther in the step than its size, or turns far
     bool m_hasDeformedPair = false;      // an obstacle's vertices move in the step
+    bool m_isAway = false;               // its nodes are on the device (kept_bodies.h)
     std::vector<TangledPair> m_tangled;  // the body's pairs that are pushed apart
     bool m_wasTangled = false;           // in this step or one shortly before
     std::vector<NodePush> m_pushes;
@@ -72,7 +73,7 @@ struct BodyContacts
         m_contacts.m_hardness = float(body->m_cfg.kKHR);
         m_contacts.m_perSecond = float(body->m_sst.isdt);
         m_contacts.m_kept = float(1 - body->m_cfg.kDP);
-        m_leftOut = m_heldTogether = m_obstacleJumps = m_hasDeformedPair = false;
+        m_leftOut = m_heldTogether = m_obstacleJumps = m_hasDeformedPair = m_isAway = false;
         m_tangled.clear();
         m_wasTangled = false;
         m_pushes.clear();

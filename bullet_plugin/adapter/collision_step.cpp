@@ -68,6 +68,7 @@ void CollisionStep::addBody(ClothMirror& cloth, btSoftBody* body)
     m_byCloth[cloth.id()] = m_byBody[body] = m_bodies.size() - 1;
     m_uploads.push_back(Upload{cloth.id(), m_bodies.size() - 1, nullptr});
     m_bodies.back().start(cloth.id(), body, cloth.parts(), cloth.order());
+    m_bodies.back().m_isAway = m_state.m_kept.stepOf(*body) != nullptr;
 }
 
 void CollisionStep::clear()
@@ -100,6 +101,7 @@ CollisionStep::Pair CollisionStep::makePair(const PairNote& note, const ClothMir
     const ObstacleMirror& mirror = m_state.obstacleMirror(note);
     Pair pair = {cloth.id(), obstacle, note.m_thickness, nullptr, {&cloth, &mirror, note.m_motion, note.m_kinematic}};
     if (!mirror.before()) return pair;
+    bringHome(*bodyOf(cloth.id()));
     const btScalar reach = note.m_thickness * (1 + btScalar(m_state.settings().m_activation));
     const DeformedPair& deformed = m_deformed.update(cloth, mirror, note.m_motion, note.m_kinematic, reach);
     const std::size_t body = m_byCloth.at(cloth.id());
@@ -151,9 +153,18 @@ void CollisionStep::addPair(const PairNote& note)
 void CollisionStep::uploadNodes(Detection detection)
 {
     std::vector<MeshId> cloths;
+    std::vector<const Upload*> uploads;
     for (const Upload& upload : m_uploads)
     {
-        cloths.push_back(upload.m_mesh);
+        const BodyContacts& body = m_bodies[upload.m_body];
+        if (body.m_isAway && detection == Detection::Check) continue;
+        if (body.m_isAway)
+            m_state.pipeline().addKept(upload.m_mesh, *m_state.m_kept.stepOf(*body.m_body));
+        else
+        {
+            cloths.push_back(upload.m_mesh);
+            uploads.push_back(&upload);
+        }
         if (upload.m_starts) continue;
         ClothContacts& contacts = m_bodies[upload.m_body].m_contacts;
         contacts.m_limit.startStep(m_mirrors[upload.m_body]->faces());
@@ -161,7 +172,7 @@ void CollisionStep::uploadNodes(Detection detection)
     }
     const auto write = [&](const NodeStretch& stretch)
     {
-        const Upload& upload = m_uploads[stretch.m_cloth];
+        const Upload& upload = *uploads[stretch.m_cloth];
         BodyContacts& body = m_bodies[upload.m_body];
         if (upload.m_starts)
             return writeNodes(
@@ -184,13 +195,24 @@ void CollisionStep::uploadNodes(Detection detection)
 void CollisionStep::recordPaths()
 {
     for (BodyContacts& body : m_bodies)
+    {
+        bringHome(body);
         for (std::size_t i = 0; i < body.nodes().count(); ++i)
             recordPath(body.m_body->m_nodes[static_cast<int>(i)], i, body.nodes());
+    }
 }
 
-void CollisionStep::begin(const std::vector<PairNote>& notes)
+void CollisionStep::bringHome(BodyContacts& body)
+{
+    if (!body.m_isAway) return;
+    m_bringHome(*body.m_body);
+    body.m_isAway = false;
+}
+
+void CollisionStep::begin(const std::vector<PairNote>& notes, BringHome bringHome)
 {
     clear();
+    m_bringHome = std::move(bringHome);
     m_metBefore = m_meetsSurface;
     m_meetsSurface = m_wasSolved = false;
     m_uploadMs = 0;
@@ -211,19 +233,29 @@ void CollisionStep::begin(const std::vector<PairNote>& notes)
 void CollisionStep::submit(ContactPlace place)
 {
     if (m_pairs.empty()) return;
+    namePairs(Detection::First);
+    if (!m_state.pipeline().mayStay()) place = ContactPlace::Host;
+    for (BodyContacts& body : m_bodies)
+        if (place == ContactPlace::Host) bringHome(body);
     submit(Detection::First, place);
     m_state.m_found.setOnDevice(m_state.pipeline(), m_state.pipeline().contactsOnDevice());
+}
+
+// Names the pairs of the coming detection. A body that is away is solved when others are checked, and was good.
+void CollisionStep::namePairs(Detection detection)
+{
+    for (const Pair& pair : m_pairs)
+    {
+        const BodyContacts& body = *bodyOf(pair.m_cloth);
+        if (body.m_leftOut || (body.m_isAway && detection == Detection::Check)) continue;
+        m_state.pipeline().addPair(pair.m_cloth, pair.m_obstacle, static_cast<float>(pair.m_thickness));
+    }
 }
 
 void CollisionStep::submit(Detection detection, ContactPlace place)
 {
     Stopwatch watch;
     uploadNodes(detection);
-    for (const Pair& pair : m_pairs)
-    {
-        if (bodyOf(pair.m_cloth)->m_leftOut) continue;
-        m_state.pipeline().addPair(pair.m_cloth, pair.m_obstacle, static_cast<float>(pair.m_thickness));
-    }
     m_state.pipeline().submit(place);
     m_uploadMs += watch.lapMs();
 }
@@ -241,6 +273,7 @@ void CollisionStep::receiveHeld(Detection detection, const std::function<bool()>
     if (statistics.m_clothsLeftOut == 0) statistics.m_status &= ~std::uint32_t(kStepClothsLeftOut);
     statistics.m_status |= kStepMotionHeldBack;
     if (detection == Detection::First) detection = Detection::Again;
+    namePairs(detection);
     submit(detection);
     receiveAll(detection);
     for (BodyContacts& body : m_bodies)
@@ -289,6 +322,7 @@ float CollisionStep::allowanceOf(MeshId cloth) const
 {
     const std::size_t index = m_byCloth.at(cloth);
     const BodyContacts& body = m_bodies[index];
+    if (body.m_isAway) return HUGE_VALF;
     const Stretch stretch = stretchOf(*body.m_body, m_mirrors[index]->faces(), body.nodes());
     const bool isApart = stretch.m_start > kMostStretch;
     if (!body.m_heldTogether && (isApart || stretch.m_end > kMostStretch)) return 1;
@@ -300,8 +334,10 @@ ContactList CollisionStep::waitForContacts(const std::function<bool()>& takeSolv
 {
     Pipeline& pipeline = m_state.pipeline();
     const ContactList contacts = pipeline.finish([this](MeshId cloth) { return allowanceOf(cloth); });
-    m_wasSolved = pipeline.areContactsOnDevice() && takeSolved && pipeline.ranOnce() && takeSolved();
+    const bool mayBeSolved = pipeline.areContactsOnDevice() && takeSolved && pipeline.ranOnce();
+    m_wasSolved = mayBeSolved && pipeline.statistics().m_invalidNodes == 0 && takeSolved();
     if (m_wasSolved || !pipeline.areContactsOnDevice()) return contacts;
+    m_meetsSurface = true;  // or the like: the next step is likely to need the host, too
     recordPaths();
     return pipeline.bringContacts();
 }
@@ -360,6 +396,7 @@ void CollisionStep::finish(const std::function<bool()>& takeSolved)
     if (m_wasSolved) return;
     for (int detections = 1; detections < kMostDetections && cutPaths(); ++detections)
     {
+        namePairs(Detection::Again);
         submit(Detection::Again);
         receiveHeld(Detection::Again);
     }
@@ -396,6 +433,7 @@ void CollisionStep::reportPassed(const std::vector<bool>& offPath)
 
 void CollisionStep::detectRealPaths()
 {
+    namePairs(Detection::Check);
     submit(Detection::Check);
     receiveHeld(Detection::Check);
 }
@@ -404,8 +442,8 @@ std::vector<BodyContacts*> CollisionStep::checkOffPath()
 {
     std::vector<bool> offPath;
     for (BodyContacts& body : m_bodies)
-        offPath.push_back((body.m_contacts.m_mayHavePassed && !body.m_wasTangled) ||
-                          body.m_contacts.m_limit.anyOffPath(body.nodes()));
+        offPath.push_back(!body.m_isAway && ((body.m_contacts.m_mayHavePassed && !body.m_wasTangled) ||
+                                             body.m_contacts.m_limit.anyOffPath(body.nodes())));
     if (std::find(offPath.begin(), offPath.end(), true) == offPath.end()) return {};
     // Keeps the reported contacts as the solver received them.
     m_state.m_found.keepList();

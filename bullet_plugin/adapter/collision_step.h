@@ -24,7 +24,9 @@ class CollisionStep
 public:
     explicit CollisionStep(PluginState& state) : m_state(state), m_deformed(state), m_starts(state) {}
 
-    void begin(const std::vector<PairNote>& notes);
+    // bringHome: called for a body that is away (kept_bodies.h) if the step needs its nodes; it predicts them.
+    using BringHome = std::function<void(btSoftBody&)>;
+    void begin(const std::vector<PairNote>& notes, BringHome bringHome);
     // Returns whether there is anything to submit.
     bool hasPairs() const { return !m_pairs.empty(); }
     // Returns whether a path met a surface in the step before, so that one is likely to do so in this step.
@@ -32,6 +34,8 @@ public:
     const std::vector<BodyContacts>& bodies() const { return m_bodies; }
     // Records the bodies' paths and enqueues the detection. place: where its contacts go, if possible.
     void submit(ContactPlace place);
+    // Brings the body home if it is away.
+    void bringHome(BodyContacts& body);
     // takeSolved: called after the wait if the contacts are on the device. Returns whether commands enqueued behind the
     // detection have solved the bodies; then no contacts are sorted, and wasSolved() is true. Null if there are none.
     void finish(const std::function<bool()>& takeSolved = nullptr);
@@ -89,6 +93,8 @@ private:
     void leaveOut(std::size_t index);
     void uploadNodes(Detection detection);
     void recordPaths();
+    void namePairs(Detection detection);
+    void listJumped();
     void submit(Detection detection, ContactPlace place = ContactPlace::Host);
     ContactList waitForContacts(const std::function<bool()>& takeSolved);
     void receiveAll(Detection detection, const std::function<bool()>& takeSolved = nullptr);
@@ -116,6 +122,7 @@ private:
     double m_uploadMs = 0;                             // see uploadMs()
     bool m_meetsSurface = false, m_metBefore = false;  // see metSurface(); in this step and the one before
     bool m_wasSolved = false;
+    BringHome m_bringHome;
     DeformedPairs m_deformed;
     PairStarts m_starts;
     std::vector<std::vector<int>> m_jumped;           // result of checkStarts(), by body

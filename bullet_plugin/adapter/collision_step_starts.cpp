@@ -52,12 +52,26 @@ std::size_t countInvalid(const btSoftBody& body)
 }
 }  // namespace
 
+// Lists the nodes that jumped. A body that is away has none, but comes home if one of its pairs starts anew.
+void CollisionStep::listJumped()
+{
+    for (const Pair& pair : m_pairs)
+    {
+        BodyContacts& body = *bodyOf(pair.m_cloth);
+        if (body.m_isAway && m_starts.startsAnew(pair.m_start)) bringHome(body);
+    }
+    for (std::size_t i = 0; i < m_bodies.size(); ++i)
+    {
+        m_jumped[i].clear();
+        if (!m_bodies[i].m_isAway) m_mirrors[i]->listJumped(m_state.threads(), m_jumped[i]);
+    }
+}
+
 void CollisionStep::checkStarts()
 {
     m_starts.beginStep();
     m_jumped.resize(std::max(m_jumped.size(), m_bodies.size()));
-    for (std::size_t i = 0; i < m_bodies.size(); ++i)
-        m_mirrors[i]->listJumped(m_state.threads(), m_jumped[i]);
+    listJumped();
     for (const Pair& pair : m_pairs)
     {
         const std::size_t body = m_byCloth.at(pair.m_cloth);
@@ -206,7 +220,7 @@ void CollisionStep::end()
         }
         if (body.m_wasTangled) limitSpeeds(*body.m_body, body.m_leftOut);
     }
-    for (ClothMirror* mirror : m_mirrors)
-        mirror->rememberEnds(m_state.threads());
+    for (std::size_t i = 0; i < m_mirrors.size(); ++i)
+        if (!m_bodies[i].m_isAway) m_mirrors[i]->rememberEnds(m_state.threads());
 }
 }  // namespace drape

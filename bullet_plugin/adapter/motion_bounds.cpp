@@ -88,6 +88,27 @@ struct Way
         forRanges(static_cast<std::size_t>(body.m_nodes.size()), threads, read);
     }
 
+    // The extents of a body that is away.
+    explicit Way(const KeptBoxes& boxes)
+    {
+        const auto toExtent = [&](int box)
+        {
+            Extent extent;
+            for (int axis = 0; axis < 3; ++axis)
+            {
+                extent.m_low[axis] = btScalar(boxes.m_low[box][axis]);
+                extent.m_high[axis] = btScalar(boxes.m_high[box][axis]);
+            }
+            return extent;
+        };
+        m_start = toExtent(0);
+        m_end = toExtent(2);
+    }
+    static Way of(const PluginState& state, const btSoftBody& body, ThreadTeam* threads)
+    {
+        return state.m_kept.isAway(body) ? Way(state.m_kept.boxesOf(body)) : Way(body, threads);
+    }
+
     // The paths as an obstacle sees them beside its bounds: those of its own pose, which the motion may not have
     // reached yet.
     Extent seenBy(const StepObstacle& obstacle) const
@@ -241,8 +262,9 @@ bool isReached(const PluginState& state, const btSoftBody& body, const std::vect
 {
     const auto isActive = [](const StepObstacle& obstacle) { return obstacle.isActive(); };
     if (std::none_of(obstacles.begin(), obstacles.end(), isActive)) return false;
-    Way rest(body, nullptr);
-    rest.m_start = rest.m_end;  // the last step that it was awake in is over
+    Way rest = Way::of(state, body, nullptr);
+    (state.m_kept.isAway(body) ? rest.m_end : rest.m_start) =
+        state.m_kept.isAway(body) ? rest.m_start : rest.m_end;  // the last step that it was awake in is over
     if (rest.m_end.empty()) return false;
     const btScalar reach = reachOf(state, body);
     return std::any_of(obstacles.begin(), obstacles.end(),
@@ -263,7 +285,7 @@ void coverMotions(const PluginState& state, const std::vector<btSoftBody*>& bodi
     { return bodies[i]->isActive() ? static_cast<std::size_t>(bodies[i]->m_nodes.size()) : 0; };
     std::vector<Way> ways(bodies.size());
     forBodies(bodies.size(), threads, sizeOf,
-              [&](std::size_t i, ThreadTeam* team) { ways[i] = Way(*bodies[i], team); });
+              [&](std::size_t i, ThreadTeam* team) { ways[i] = Way::of(state, *bodies[i], team); });
     // Filters of the app are called on this thread alone.
     for (std::size_t i = 0; i < bodies.size(); ++i)
         if (bodies[i]->isActive()) coverMotion(state, *bodies[i], ways[i], obstacles);

@@ -188,14 +188,25 @@ void PairStarts::tell(const StartingPair& pair, Guard& guard, bool pushed)
     m_state.log(line);
 }
 
+bool PairStarts::startsAnew(const StartingPair& pair, const Guard& guard)
+{
+    return !guard.m_checked || guard.m_intersections > 0 || guard.m_outSteps > 0 ||
+           guard.m_clothRevision != pair.m_cloth->startRevision() ||
+           guard.m_obstacleRevision != pair.m_obstacle->startRevision();
+}
+
+bool PairStarts::startsAnew(const StartingPair& pair) const
+{
+    const auto guard = m_guards.find(std::uint64_t(pair.m_cloth->id()) << 32 | pair.m_obstacle->id());
+    return guard == m_guards.end() || startsAnew(pair, guard->second);
+}
+
 void PairStarts::check(const StartingPair& pair, const std::vector<int>& jumped, BodyContacts& body)
 {
     Guard& guard = m_guards[std::uint64_t(pair.m_cloth->id()) << 32 | pair.m_obstacle->id()];
     guard.m_lastStep = m_step;
     body.m_wasTangled = body.m_wasTangled || m_step < guard.m_calmUntil;
-    const bool anew = !guard.m_checked || guard.m_intersections > 0 || guard.m_outSteps > 0 ||
-                      guard.m_clothRevision != pair.m_cloth->startRevision() ||
-                      guard.m_obstacleRevision != pair.m_obstacle->startRevision();
+    const bool anew = startsAnew(pair, guard);
     if (!anew && jumped.empty()) return;
     if (!guard.m_checked) tellMargins(pair);
     guard.m_checked = true;

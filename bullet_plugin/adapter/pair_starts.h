@@ -45,6 +45,8 @@ public:
     // Checks the pair where necessary. jumped: nodes that are not where the last step left them. If the pair
     // intersects and can be separated, adds the necessary pushes to the body. Reads Bullet's nodes only.
     void check(const StartingPair& pair, const std::vector<int>& jumped, BodyContacts& body);
+    // Returns whether check() will look at the pair's nodes though none has jumped.
+    bool startsAnew(const StartingPair& pair) const;
 
     // Return the number of intersecting pairs of a cloth and an obstacle in the step so far, and of their triangles.
     std::size_t intersectingPairs() const { return m_intersectingPairs; }
@@ -79,6 +81,7 @@ private:
         std::vector<std::uint32_t> m_triangles;
     };
 
+    static bool startsAnew(const StartingPair& pair, const Guard& guard);
     using Row = std::map<int, btVector3>;  // by node, direction of the push, of any length
 
     void listFaces(const StartingPair& pair, const std::vector<int>* nodes);

@@ -182,6 +182,37 @@ void Plugin::release(const btCollisionWorld& world)
         release(objects[i]);
 }
 
+std::string Plugin::keepOnDevice(btSoftBody& body, bool keep)
+{
+    if (!m_state) return outOfMemory();
+    return textOf(
+        [&]
+        {
+            if (keep)
+            {
+                const char* const reason = m_state->m_kept.keep(body);
+                return std::string(reason ? reason : "");
+            }
+            m_state->m_kept.release(body);
+            return std::string();
+        });
+}
+
+void Plugin::beginFetch(const btSoftBody& body)
+{
+    if (m_state) m_state->m_kept.beginFetch(body);
+}
+
+bool Plugin::fetch(btSoftBody& body)
+{
+    return m_state && guardedOr(false, [&] { return m_state->m_kept.fetch(body); });
+}
+
+bool Plugin::fetch(const btSoftBody& body, const NodeArrays& arrays)
+{
+    return m_state && guardedOr(false, [&] { return m_state->m_kept.fetch(body, arrays); });
+}
+
 void Plugin::obstacleChanged(const btCollisionShape* shape)
 {
     if (m_state) m_state->obstacleChanged(shape);

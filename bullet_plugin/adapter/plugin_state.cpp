@@ -134,6 +134,7 @@ void PluginState::forgetScene() noexcept
 void PluginState::fail(const char* call, const CaughtException& caught) noexcept
 {
     ++m_failures;
+    m_kept.abandon();
     forgetScene();
     if (caught.m_isMemory)
     {
@@ -360,6 +361,13 @@ void PluginState::startAnew(const btCollisionObject* object)
         if (entry.first == object) entry.second.startAnew();
     for (auto& entry : m_obstacles)
         if (entry.first.m_object == object) entry.second.startAnew();
+}
+
+void PluginState::bringHome(btSoftBody& body)
+{
+    m_kept.comeHome(body);
+    ClothMirror* const mirror = findCloth(&body);
+    if (mirror && m_kept.hadPair(body)) mirror->rememberEnds(threads());
 }
 
 void PluginState::teleported(const btCollisionObject* object)

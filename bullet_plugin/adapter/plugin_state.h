@@ -18,6 +18,7 @@
 #include "BulletSoftBody/btSoftBodyConcaveCollisionAlgorithm.h"
 #include "drape/plugin.h"
 #include "bullet_plugin/adapter/found_contacts.h"
+#include "bullet_plugin/adapter/kept_bodies.h"
 #include "bullet_plugin/adapter/kinematic_motion.h"
 #include "bullet_plugin/adapter/mirrors.h"
 #include "bullet_plugin/adapter/pair_algorithm.h"
@@ -113,6 +114,8 @@ public:
     // Takes the notes of the given cloths, which are sorted by address. Omits obstacles whose noted shape is gone.
     std::vector<PairNote> takeNotes(const btSoftBodySolver* solver, const std::vector<const btSoftBody*>& cloths);
 
+    // Gives a kept body that is away the nodes of the last step's end. They count as that step's own.
+    void bringHome(btSoftBody& body);
     // Returns the mirrors of a noted pair, and makes missing ones. Counts the step for dropOldMirrors().
     ClothMirror& clothMirror(const PairNote& note);
     ObstacleMirror& obstacleMirror(const PairNote& note);
@@ -120,6 +123,7 @@ public:
 
     StepStatistics m_statistics;
     FoundContacts m_found;
+    KeptBodies m_kept{*this};
 
 private:
     struct Owned

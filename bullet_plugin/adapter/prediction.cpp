@@ -107,21 +107,38 @@ void setBounds(btSoftBody& body, const Bounds& bounds)
 }
 }  // namespace
 
-bool isPlain(const btSoftBody& body, btScalar dt)
+bool isPlain(const btSoftBody& body)
 {
     const btSoftBody::Config& config = body.m_cfg;
     const bool isPushed = config.kLF > 0 || config.kDG > 0 || config.kPR != 0 || config.kVC > 0;
-    return dt > 0 && config.timescale > 0 && !isPushed && !body.m_bUpdateRtCst && !body.m_pose.m_bframe &&
-           body.m_clusters.size() == 0 && body.m_fdbvt.empty() && !body.m_reducedModel && body.m_worldInfo;
+    return !isPushed && !body.m_pose.m_bframe && body.m_clusters.size() == 0 && body.m_fdbvt.empty() &&
+           !body.m_reducedModel && body.m_worldInfo;
 }
 
-void predictPlain(btSoftBody& body, btScalar dt, ThreadTeam* threads)
+bool isPlain(const btSoftBody& body, btScalar dt)
+{
+    return dt > 0 && body.m_cfg.timescale > 0 && !body.m_bUpdateRtCst && isPlain(body);
+}
+
+void beginPlain(btSoftBody& body, btScalar dt)
 {
     body.m_sst.sdt = dt * body.m_cfg.timescale;
     body.m_sst.isdt = 1 / body.m_sst.sdt;
     body.m_sst.velmrg = body.m_sst.sdt * 3;
     body.m_sst.radmrg = body.getCollisionShape()->getMargin();
     body.m_sst.updmrg = body.m_sst.radmrg * btScalar(0.25);
+}
+
+void setBounds(btSoftBody& body, const btVector3& low, const btVector3& high)
+{
+    const btScalar margin = body.getCollisionShape()->getMargin();
+    body.m_bounds[0] = low - btVector3(margin, margin, margin);
+    body.m_bounds[1] = high + btVector3(margin, margin, margin);
+}
+
+void predictPlain(btSoftBody& body, btScalar dt, ThreadTeam* threads)
+{
+    beginPlain(body, dt);
     const NodeStep step(body);
     std::atomic<bool> leavesChanged{false};
     std::mutex mutex;

@@ -15,12 +15,20 @@
 
 namespace drape
 {
-// Returns whether predictPlain() replaces Bullet's function: the body has no wind, pressure, volume, pose, cluster or
-// face tree that would have to be updated, and time passes. dt: s.
+// Returns whether the body has no wind, pressure, volume, pose, cluster or face tree that would have to be updated.
+bool isPlain(const btSoftBody& body);
+// Returns whether predictPlain() replaces Bullet's function in the coming step of dt seconds: time passes, too, and no
+// link has changed.
 bool isPlain(const btSoftBody& body, btScalar dt);
 
 // Predicts a plain body over dt seconds. Allocates no memory. threads: null for the caller alone.
 void predictPlain(btSoftBody& body, btScalar dt, ThreadTeam* threads);
+
+// Sets the times and margins of a plain body's step of dt seconds, as predictPlain() does first.
+void beginPlain(btSoftBody& body, btScalar dt);
+
+// Sets the body's bounds around a box of its predicted nodes, m.
+void setBounds(btSoftBody& body, const btVector3& low, const btVector3& high);
 
 // Gives the broad phase the bounds of a body that predictPlain() predicted.
 void updateBroadphase(btSoftBody& body);

@@ -69,7 +69,7 @@ void holdStill(btSoftBody& body, const BodyContacts* contacts)
 struct SoftBodySolver::Work
 {
     explicit Work(PluginState& state)
-        : m_threads(state.threads()), m_solver(new StepSolver(m_threads)), m_failures(state.failures())
+        : m_state(state), m_threads(state.threads()), m_solver(new StepSolver(m_threads)), m_failures(state.failures())
     {
     }
 
@@ -91,18 +91,29 @@ struct SoftBodySolver::Work
         return found != m_substeps.end() && found->second->isPredicted() ? found->second.get() : nullptr;
     }
     // Runs Bullet's solver for the bodies without contacts. Scenes may have thousands of small bodies: the environment
-    // changes once for all of them.
-    void solveByBullet(const btAlignedObjectArray<btSoftBody*>& bodies)
+    // changes once for all of them. Returns whether there were any.
+    bool solveByBullet(const btAlignedObjectArray<btSoftBody*>& bodies)
     {
+        bool any = false;
         const CallersFloats floats;
         for (int i = 0; i < bodies.size(); ++i)
         {
             if (!isSteppedBody(*bodies[i]) || contactsOf(*bodies[i]) || substepsOf(*bodies[i])) continue;
+            any = true;
             m_solved[static_cast<std::size_t>(i)] = 1;
             bodies[i]->solveConstraints();
         }
+        return any;
     }
     void predict(const btAlignedObjectArray<btSoftBody*>& bodies, btScalar dt);
+    SubstepBody* substepsAt(const btSoftBody& body) const;
+    template <class Predict>
+    void predictOne(btSoftBody& body, ThreadTeam* threads, const Predict& predict);
+    void beginAway(btSoftBody& body);
+    void bringHome(btSoftBody& body);
+    void bringFreeHome(const btAlignedObjectArray<btSoftBody*>& bodies);
+    void bringAllHome(const btAlignedObjectArray<btSoftBody*>& bodies);
+    std::size_t endKept(const btAlignedObjectArray<btSoftBody*>& bodies);
     std::size_t substepNodes(const btSoftBody& body) const;
     void beginSubsteps(const btAlignedObjectArray<btSoftBody*>& bodies);
     void readPaths(const btAlignedObjectArray<btSoftBody*>& bodies);
@@ -121,7 +132,9 @@ struct SoftBodySolver::Work
         state.pipeline().giveBackRoom();
     }
 
+    PluginState& m_state;
     ThreadTeam& m_threads;
+    btScalar m_dt = 0;                      // s, of the prediction
     std::unique_ptr<CollisionStep> m_step;  // null until it is needed
     std::unique_ptr<StepSolver> m_solver;
     UsageWatch m_usage;
@@ -140,6 +153,7 @@ struct SoftBodySolver::Work
     bool m_listed = false;                                           // m_predicted is whole
     bool m_detected = false;                                         // the paths of all bodies with a pair are recorded
     bool m_begun = false;                                            // beginSubsteps() was called in this step
+    bool m_wasSolved = false;                                        // the device has solved this step
     SolveStage* m_stage = nullptr;                                   // solves this step's cloths; null: the host does
     std::size_t m_asleep = 0;                                        // cloths that are not among them
     StepParts m_parts;                                               // parts of the running step, without its waits
@@ -178,24 +192,49 @@ void SoftBodySolver::predictMotion(btScalar dt)
     m_work->m_parts.m_mirrorMs += watch.lapMs();
 }
 
+SubstepBody* SoftBodySolver::Work::substepsAt(const btSoftBody& body) const
+{
+    const auto found = m_substeps.find(&body);
+    return found == m_substeps.end() ? nullptr : found->second.get();
+}
+
+template <class Predict>
+void SoftBodySolver::Work::predictOne(btSoftBody& body, ThreadTeam* threads, const Predict& predict)
+{
+    SubstepBody* const substeps = substepsAt(body);
+    if (substeps) substeps->beforePrediction(body, threads);
+    predict(body);
+    if (substeps) substeps->afterPrediction(body, threads);
+}
+
+// Begins the step of a body whose nodes are on the device, or gives it the nodes of the last step's end.
+void SoftBodySolver::Work::beginAway(btSoftBody& body)
+{
+    SubstepBody* const substeps = substepsAt(body);
+    if (substeps && m_state.m_kept.begin(body, m_dt)) return substeps->predictAway();
+    m_state.bringHome(body);
+}
+
+// Brings a body home whose step has begun without its nodes, and predicts them. The broad phase keeps the bounds.
+void SoftBodySolver::Work::bringHome(btSoftBody& body)
+{
+    m_state.bringHome(body);
+    const btVector3 bounds[2] = {body.m_bounds[0], body.m_bounds[1]};
+    predictOne(body, &m_threads, [this](btSoftBody& plain) { predictPlain(plain, m_dt, &m_threads); });
+    std::copy(bounds, bounds + 2, body.m_bounds);
+}
+
 // Predicts the bodies, plain ones side by side, and keeps what substeps need of the step's start. Bullet predicts the
 // others on this thread: its function may allocate memory and call the app. The broad phase gets all bounds in the
 // order of the bodies. Allocates no memory.
 void SoftBodySolver::Work::predict(const btAlignedObjectArray<btSoftBody*>& bodies, btScalar dt)
 {
-    const auto substepsAt = [this](const btSoftBody& body)
-    {
-        const auto found = m_substeps.find(&body);
-        return found == m_substeps.end() ? nullptr : found->second.get();
-    };
-    const auto predictOne = [&](btSoftBody& body, ThreadTeam* threads, const auto& predictNodes)
-    {
-        SubstepBody* const substeps = substepsAt(body);
-        if (substeps) substeps->beforePrediction(body, threads);
-        predictNodes(body);
-        if (substeps) substeps->afterPrediction(body, threads);
-    };
-    const auto isPlainAt = [&](int i) { return bodies[i]->isActive() && isPlain(*bodies[i], dt); };
+    m_dt = dt;
+    for (int i = 0; i < bodies.size(); ++i)
+        if (bodies[i]->isActive() && m_state.m_kept.isAway(*bodies[i])) beginAway(*bodies[i]);
+    const auto isAway = [this](const btSoftBody& body) { return m_state.m_kept.isAway(body); };
+    const auto isPlainAt = [&](int i)
+    { return bodies[i]->isActive() && !isAway(*bodies[i]) && isPlain(*bodies[i], dt); };
     const auto sizeOf = [&](std::size_t i)
     { return isPlainAt(int(i)) ? static_cast<std::size_t>(bodies[int(i)]->m_nodes.size()) : 0; };
     const auto predictAt = [&](std::size_t i, ThreadTeam* threads)
@@ -204,7 +243,7 @@ void SoftBodySolver::Work::predict(const btAlignedObjectArray<btSoftBody*>& bodi
     for (int i = 0; i < bodies.size(); ++i)
     {
         if (!bodies[i]->isActive()) continue;
-        if (isPlainAt(i))
+        if (isPlainAt(i) || isAway(*bodies[i]))
             updateBroadphase(*bodies[i]);
         else
             predictOne(*bodies[i], nullptr, [&](btSoftBody& body) { predictByBullet(body, dt); });
@@ -348,16 +387,21 @@ void SoftBodySolver::detect()
     StepStatistics& statistics = m_state->m_statistics;
     if (work.m_usage.hasFallen(elementsOf(statistics))) work.giveBackRoom(*m_state);
     Stopwatch watch;
-    step.begin(m_state->takeNotes(this, work.m_predicted));
+    step.begin(m_state->takeNotes(this, work.m_predicted), [&work](btSoftBody& body) { work.bringHome(body); });
+    work.bringFreeHome(m_softBodySet);
     work.m_parts.m_mirrorMs += watch.lapMs();
     const bool follows = work.m_stage && work.mayFollow(m_softBodySet);
+    if (!follows) work.bringAllHome(m_softBodySet);
     step.submit(follows ? ContactPlace::Device : ContactPlace::Host);
     const double uploadMs = step.uploadMs();
     watch.lapMs();
     const bool submitted = follows && work.submitBehind(m_softBodySet, m_state->m_found.source());
     work.m_parts.m_readMs += watch.lapMs();
-    step.finish(submitted ? [&work] { return work.m_solver->finishBehind(work.m_touched, work.m_free, *work.m_stage); }
-                          : std::function<bool()>());
+    const auto takeSolved = [&work](bool hasWaited)
+    { return work.m_solver->finishBehind(work.m_touched, work.m_free, *work.m_stage, hasWaited); };
+    step.finish(submitted ? [&takeSolved] { return takeSolved(true); } : std::function<bool()>());
+    work.m_wasSolved = step.wasSolved() || (submitted && !step.hasPairs() && takeSolved(false));
+    if (!work.m_wasSolved) work.bringAllHome(m_softBodySet);
     for (int i = 0; i < m_softBodySet.size(); ++i)
         step.reportInvalid(*m_softBodySet[i]);
     work.m_detected = true;
@@ -413,13 +457,14 @@ void SoftBodySolver::Work::takeSubsteps(const btAlignedObjectArray<btSoftBody*>&
     {
         btSoftBody& body = *bodies[i];
         if (substepNodes(body) == 0) continue;
+        const KeptStep* const kept = m_state.m_kept.stepOf(body);
         BodyContacts* const contacts = contactsOf(body);
         SubstepBody& substeps = *substepsOf(body);
         ClothContacts& cloth = contacts ? contacts->m_contacts : substeps.alone();
         substeps.addRows(body, cloth.m_nodes, m_rigidBodies);
-        m_ends.emplace_back(&body, &cloth.m_nodes);
+        if (!kept) m_ends.emplace_back(&body, &cloth.m_nodes);
         const bool isFree = !contacts && !substeps.rigidRows();
-        (isFree ? m_free : m_touched).push_back({&cloth, &substeps.substeps(), nullptr, substeps.rigidRows()});
+        (isFree ? m_free : m_touched).push_back({&cloth, &substeps.substeps(), nullptr, substeps.rigidRows(), kept});
     }
 }
 
@@ -433,7 +478,7 @@ void SoftBodySolver::Work::takeForeign(const btAlignedObjectArray<btSoftBody*>& 
         BodyContacts* const contacts = contactsOf(body);
         if (!contacts || !isSteppedBody(body) || substepsOf(body)) continue;
         m_bulletLinks.emplace_back(new BulletLinks(body, !contacts->m_contacts.m_features.empty()));
-        m_touched.push_back({&contacts->m_contacts, nullptr, m_bulletLinks.back().get(), nullptr});
+        m_touched.push_back({&contacts->m_contacts, nullptr, m_bulletLinks.back().get(), nullptr, nullptr});
     }
 }
 
@@ -441,7 +486,7 @@ void SoftBodySolver::Work::takeForeign(const btAlignedObjectArray<btSoftBody*>& 
 // solve all bodies with a pair. A path that meets a surface has to end there before.
 bool SoftBodySolver::Work::mayFollow(const btAlignedObjectArray<btSoftBody*>& bodies) const
 {
-    if (!m_stage || !m_step->hasPairs() || m_step->metSurface()) return false;
+    if (!m_stage || m_step->metSurface() || !(m_step->hasPairs() || m_state.m_kept.anyBegun())) return false;
     const auto fits = [this](const BodyContacts& body)
     { return substepNodes(*body.m_body) > 0 && !body.m_contacts.m_isFiltered && !body.m_hasDeformedPair; };
     const auto isRigid = [](const btSoftBody* body)
@@ -450,10 +495,44 @@ bool SoftBodySolver::Work::mayFollow(const btAlignedObjectArray<btSoftBody*>& bo
            std::none_of(&bodies[0], &bodies[0] + bodies.size(), isRigid);
 }
 
+// Brings bodies home that nothing holds, whose momentum the host keeps.
+void SoftBodySolver::Work::bringFreeHome(const btAlignedObjectArray<btSoftBody*>& bodies)
+{
+    for (int i = 0; i < bodies.size(); ++i)
+        if (m_state.m_kept.stepOf(*bodies[i]) && !contactsOf(*bodies[i]) && !m_state.m_kept.hasPins(*bodies[i]))
+            bringHome(*bodies[i]);
+}
+
+void SoftBodySolver::Work::bringAllHome(const btAlignedObjectArray<btSoftBody*>& bodies)
+{
+    for (int i = 0; i < bodies.size(); ++i)
+    {
+        if (!m_state.m_kept.stepOf(*bodies[i])) continue;
+        BodyContacts* const contacts = contactsOf(*bodies[i]);
+        if (contacts)
+            m_step->bringHome(*contacts);
+        else
+            bringHome(*bodies[i]);
+    }
+}
+
+// Stores the nodes of kept bodies that are at home. Returns the number of bodies whose step began and ended away.
+std::size_t SoftBodySolver::Work::endKept(const btAlignedObjectArray<btSoftBody*>& bodies)
+{
+    std::size_t away = 0;
+    for (int i = 0; i < bodies.size(); ++i)
+    {
+        if (!isSteppedBody(*bodies[i])) continue;
+        away += m_state.m_kept.isAway(*bodies[i]);
+        m_state.m_kept.endStep(*bodies[i], contactsOf(*bodies[i]) != nullptr);
+    }
+    return away;
+}
+
 // Enqueues the step of all bodies behind the detection. Returns false, with nothing enqueued, if that is not possible.
 bool SoftBodySolver::Work::submitBehind(const btAlignedObjectArray<btSoftBody*>& bodies, const ContactSource& source)
 {
-    if (!source.onDevice().m_list) return false;
+    if (m_step->hasPairs() && !source.onDevice().m_list) return false;
     takeSubsteps(bodies);
     return m_solver->submitBehind(m_touched, m_free, source, *m_stage);
 }
@@ -464,6 +543,7 @@ void SoftBodySolver::chooseStage()
     std::size_t nodes = 0;
     for (int i = 0; i < m_softBodySet.size(); ++i)
         nodes += m_work->substepNodes(*m_softBodySet[i]);
+    if (m_state->m_kept.anyBegun()) nodes = SIZE_MAX;  // wherever others would be solved
     if (nodes > 0) m_work->m_stage = m_state->pipeline().solveStage(nodes);
 }
 
@@ -473,7 +553,7 @@ void SoftBodySolver::solveBodies(StepParts& parts)
     Work& work = *m_work;
     work.m_bulletLinks.clear();
     work.m_solved.assign(static_cast<std::size_t>(m_softBodySet.size()), 0);
-    const bool wasSolved = work.m_step && work.m_step->wasSolved();
+    const bool wasSolved = work.m_wasSolved;
     Stopwatch watch;
     if (!wasSolved)
     {
@@ -481,10 +561,9 @@ void SoftBodySolver::solveBodies(StepParts& parts)
         work.takeForeign(m_softBodySet);
     }
     parts.m_readMs += watch.lapMs();
-    work.solveByBullet(m_softBodySet);
-    parts.m_bulletMs += watch.lapMs();
+    if (work.solveByBullet(m_softBodySet)) parts.m_bulletMs += watch.lapMs();
     m_state->m_statistics.m_clothsOnDevice =
-        wasSolved ? work.m_ends.size()
+        wasSolved ? work.m_touched.size() + work.m_free.size()
                   : work.m_solver->solve(work.m_touched, work.m_free, m_state->m_found.source(), work.m_stage);
     double linksMs = 0;
     for (const std::unique_ptr<BulletLinks>& links : work.m_bulletLinks)
@@ -508,7 +587,7 @@ void SoftBodySolver::closeOffPath(const std::vector<BodyContacts*>& bodies)
     std::vector<SolverNodes> checked;
     for (BodyContacts* body : bodies)
     {
-        cloths.push_back({&body->m_contacts, nullptr, nullptr, nullptr});
+        cloths.push_back({&body->m_contacts, nullptr, nullptr, nullptr, nullptr});
         checked.push_back(body->nodes());
     }
     m_work->m_solver->close(cloths, m_state->m_found.source());
@@ -528,7 +607,7 @@ void SoftBodySolver::solveStep()
     StepParts& parts = m_work->m_parts;
     const std::size_t waits = m_state->ready() ? m_state->pipeline().deviceWaits() : 0;
     Stopwatch watch;
-    m_work->m_begun = false;
+    m_work->m_begun = m_work->m_wasSolved = false;
     m_work->m_stage = nullptr;
     leaveToBullet();
     parts.m_readMs += watch.lapMs();
@@ -541,6 +620,7 @@ void SoftBodySolver::solveStep()
     watch.lapMs();
     closeOffPath(step->checkOffPath());
     step->end();
+    statistics.m_clothsAway = m_work->endKept(m_softBodySet);
     parts.m_uploadMs = step->uploadMs();
     parts.m_checkMs = watch.lapMs() - (statistics.m_waitMs - waitMs) - (parts.m_uploadMs - uploadMs);
     parts.m_waitMs = statistics.m_waitMs;
@@ -562,7 +642,10 @@ void SoftBodySolver::endFailedStep()
         btSoftBody& body = *m_softBodySet[i];
         if (work.isSolved(i) || !work.isSteppedBody(body)) continue;
         if (handlesSteppedCloth(*m_state, body))
-            holdStill(body, work.m_detected ? work.contactsOf(body) : nullptr);
+        {
+            const BodyContacts* const contacts = work.m_detected ? work.contactsOf(body) : nullptr;
+            holdStill(body, contacts && !contacts->m_isAway ? contacts : nullptr);
+        }
         else
             drape::solveByBullet(body);
     }
@@ -591,10 +674,11 @@ void SoftBodySolver::updateSoftBodies()
     Stopwatch watch;
     // Without a state Bullet's function does the same on this thread.
     if (!m_work) return btDefaultSoftBodySolver::updateSoftBodies();
-    const auto sizeOf = [this](std::size_t i)
+    const auto isAtHome = [this](const btSoftBody& body) { return body.isActive() && !m_state->m_kept.isAway(body); };
+    const auto sizeOf = [&](std::size_t i)
     {
         const btSoftBody& body = *m_softBodySet[int(i)];
-        return body.isActive() ? static_cast<std::size_t>(body.m_nodes.size()) : 0;
+        return isAtHome(body) ? static_cast<std::size_t>(body.m_nodes.size()) : 0;
     };
     // Normals are written to the body alone, and nothing else is read: integrateMotion() of Bullet 3.24 only calls
     // updateNormals().

@@ -24,13 +24,6 @@ std::ptrdiff_t nodeAt(const btSoftBody& body, const btSoftBody::Node* node)
     const btSoftBody::Node* const first = body.m_nodes.size() > 0 ? &body.m_nodes[0] : nullptr;
     return node >= first && node < first + body.m_nodes.size() ? node - first : -1;
 }
-
-// Returns how far the end of a free path in substeps lies from Bullet's prediction, per unit of acceleration, s².
-btScalar shiftOf(const btSoftBody& body)
-{
-    const btScalar share = btScalar(Substeps::pathShare(SubstepBody::substepsOf(body)));
-    return (share - 1) * body.m_sst.sdt * body.m_sst.sdt;
-}
 }  // namespace
 
 const char* SubstepBody::reasonFromSettings(const btSoftBody& body)
@@ -71,9 +64,15 @@ int SubstepBody::substepsOf(const btSoftBody& body)
     return std::max(kLeastSubsteps, body.m_cfg.piterations);
 }
 
+btScalar SubstepBody::pathShift(const btSoftBody& body)
+{
+    const btScalar share = btScalar(Substeps::pathShare(substepsOf(body)));
+    return (share - 1) * body.m_sst.sdt * body.m_sst.sdt;
+}
+
 void SubstepBody::reserve(const btSoftBody& body)
 {
-    m_isPredicted = false;
+    m_isPredicted = m_isAway = false;
     const std::size_t count = body.isActive() ? nodeCount(body) : 0;
     if (m_velocities.size() != count) m_velocities.clear();
     if (count == 0) return;
@@ -96,8 +95,9 @@ void SubstepBody::beforePrediction(const btSoftBody& body, ThreadTeam* threads)
 void SubstepBody::afterPrediction(btSoftBody& body, ThreadTeam* threads)
 {
     if (!(body.m_sst.sdt > 0) || m_velocities.size() != nodeCount(body)) return;
-    const btScalar shift = shiftOf(body), perSecond = body.m_sst.isdt;
+    const btScalar shift = pathShift(body), perSecond = body.m_sst.isdt;
     m_isPredicted = true;
+    m_isAway = false;
     const auto bring = [&](std::size_t first, std::size_t last)
     {
         for (std::size_t i = first; i < last; ++i)
@@ -121,7 +121,7 @@ void SubstepBody::leave(btSoftBody& body)
 {
     m_isPredicted = false;
     changeOver();
-    const btScalar shift = shiftOf(body);
+    const btScalar shift = pathShift(body);
     for (std::size_t i = 0; fits(body) && i < m_accelerations.size(); ++i)
         body.m_nodes[static_cast<int>(i)].m_x -= vectorOf(m_accelerations[i]) * shift;
 }
@@ -251,6 +251,7 @@ void SubstepBody::begin(const btSoftBody& body, ClothContacts* recorded, ThreadT
 
 void SubstepBody::readPaths(const btSoftBody& body, ClothContacts* recorded, ThreadTeam* threads)
 {
+    if (m_isAway) return;
     SolverNodes& nodes = recorded ? recorded->m_nodes : m_alone.m_nodes;
     const auto read = [&](std::size_t first, std::size_t last)
     {

@@ -39,6 +39,10 @@ public:
     // Brings the predicted positions to where substeps take free nodes. Call after the prediction, with the same nodes.
     // Allocates no memory.
     void afterPrediction(btSoftBody& body, ThreadTeam* threads);
+    // Begins a step whose nodes the device predicts (kept_bodies.h).
+    void predictAway() { m_isPredicted = m_isAway = true; }
+    // Returns how far the end of a free path in substeps lies from Bullet's prediction, per unit of acceleration, s².
+    static btScalar pathShift(const btSoftBody& body);
     // Returns whether the body has the nodes of the prediction.
     bool fits(const btSoftBody& body) const;
     // Leaves the step to Bullet, with Bullet's prediction.
@@ -87,6 +91,7 @@ private:
     void setLinks(const btSoftBody& body, ThreadTeam* threads);
 
     bool m_isPredicted = false;
+    bool m_isAway = false;                // the device predicts the nodes
     std::vector<btVector3> m_velocities;  // before the prediction, m/s
     std::vector<Vec3> m_accelerations;    // m/s², constant in the step
     std::vector<Prediction> m_predictions;

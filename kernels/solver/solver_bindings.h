@@ -1,10 +1,12 @@
 // Arguments of the kernels that solve cloths (shared/bindings.h). input, work, topology: see SolveLayout. contacts: of
-// the step, in canonical order, behind their head. nodes, marks: of a work-group's leaf.
+// the step, in canonical order, behind their head. nodes, marks: of a work-group's leaf. kept: nodes that stay on the
+// device. detected: the detection's nodes.
 #ifndef DRAPE_SOLVER_BINDINGS_H
 #define DRAPE_SOLVER_BINDINGS_H
 
 #include "../shared/bindings.h"
 #include "../shared/contact.h"
+#include "../shared/kept_nodes.h"
 #include "../shared/mesh.h"
 #include "../shared/solve_step.h"
 
@@ -15,6 +17,14 @@
 #define DRAPE_SOLVE_GROUPS DRAPE_ORDER_CONTACTS, DRAPE_VALUE(SolvePass, pass)
 
 #define DRAPE_SOLVE_LEAVES DRAPE_SOLVE_GROUPS, DRAPE_LOCAL(SolverNode, nodes), DRAPE_LOCAL(DRAPE_UINT, marks)
+
+#define DRAPE_PREDICT_KEPT                                                                        \
+    DRAPE_VALUE(KeptLaunch, launch), DRAPE_READS(KeptCloth, cloths), DRAPE_READS(KeptNode, kept), \
+        DRAPE_UPDATES(float, detected)
+
+#define DRAPE_SOLVE_KEPT                                                                                         \
+    DRAPE_VALUE(KeptLaunch, launch), DRAPE_VALUE(SolveLayout, layout), DRAPE_READS(SolveTopologyWord, topology), \
+        DRAPE_READS(KeptCloth, cloths), DRAPE_UPDATES(KeptNode, kept), DRAPE_UPDATES(SolveWorkWord, work)
 
 #ifndef __OPENCL_VERSION__
 namespace drape::kernels
@@ -29,6 +39,9 @@ DRAPE_BIND(solveSmallCloths, DRAPE_SOLVE_LEAVES)
 DRAPE_BIND(sweepLeaves, DRAPE_SOLVE_LEAVES)
 DRAPE_BIND(sweepGroups, DRAPE_SOLVE_GROUPS)
 DRAPE_BIND(passNodes, DRAPE_SOLVE_GROUPS)
+DRAPE_BIND(predictKept, DRAPE_PREDICT_KEPT)
+DRAPE_BIND(takeKeptPaths, DRAPE_SOLVE_KEPT)
+DRAPE_BIND(keepNodes, DRAPE_SOLVE_KEPT, DRAPE_UPDATES(KeptBounds, bounds))
 }  // namespace drape::kernels
 #endif
 

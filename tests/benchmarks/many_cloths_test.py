@@ -10,8 +10,9 @@ from programs import ProgramTest
 class ManyCloths(ProgramTest):
     def test_host_and_device_move_cloths_alike(self):
         rows = {row["method"]: row for row in self.quick("many_cloths", "--nodes", "9", "--steps", "60")}
-        self.assertEqual(set(rows), {"host", "device", "auto", "bullet_links"})
+        self.assertEqual(set(rows), {"host", "device", "kept", "auto", "bullet_links"})
         self.assertEqual(rows["host"]["hash"], rows["device"]["hash"])
+        self.assertEqual(rows["host"]["hash"], rows["kept"]["hash"])
         self.assertEqual(rows["host"]["hash"], rows["auto"]["hash"])
         self.assertNotEqual(rows["host"]["hash"], rows["bullet_links"]["hash"])
         self.assertEqual(rows["host"]["cloths_on_device"], "0")

@@ -26,6 +26,8 @@ public:
     // Uploads what changed of the step's pairs.
     void writePairs(Device& device, const StepPairs& pairs);
 
+    // Nodes of the step, laid out like ClothNodes.
+    Buffer<float>& nodes() { return m_nodes; }
     ClothBuffers cloths() const { return {m_nodes, m_topology, m_layout}; }
     PairBuffers pairs(const Scene& scene, const StepPairs& pairs) const
     {
@@ -39,8 +41,8 @@ private:
     ArenaArray<Edge> m_edges{m_topology, "cloth edges"};
     ArenaArray<cl_uint> m_order{m_topology, "cloth order"};
     ClothLayout m_layout = {};
-    std::vector<cl_uint> m_clustered;          // order of the triangles
-    Buffer<float> m_nodes{"cloth positions"};  // laid out like ClothNodes
+    std::vector<cl_uint> m_clustered;  // order of the triangles
+    Buffer<float> m_nodes{"cloth positions"};
     Buffer<float> m_radius{"cloth meshes"}, m_thickness{"pairs of meshes"};
     Buffer<ObstacleMotion> m_motions{"obstacle places"};
     std::vector<float> m_sentRadius, m_sentThickness;

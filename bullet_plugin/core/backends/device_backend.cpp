@@ -134,9 +134,24 @@ bool DeviceBackend::sendNodes(const Scene& scene, std::size_t first, std::size_t
 
 void DeviceBackend::uploadStep(const Scene& scene, const StepPairs& pairs, std::size_t sent)
 {
-    m_cloths.writeNodes(*m_device, scene, sent, scene.m_cloths.vertexCount() - sent);
+    if (pairs.m_kept.size() < scene.m_cloths.presentMeshes())  // the device predicts those of kept cloths
+        m_cloths.writeNodes(*m_device, scene, sent, scene.m_cloths.vertexCount() - sent);
     m_cloths.writePairs(*m_device, pairs);
     if (pairs.m_anySelf) m_self.setReach(*m_device, pairs.m_self);
+    if (!pairs.m_kept.empty()) predictKept(scene, pairs);
+}
+
+void DeviceBackend::predictKept(const Scene& scene, const StepPairs& pairs)
+{
+    std::vector<KeptCloth> cloths;
+    for (const KeptInput& kept : pairs.m_kept)
+    {
+        KeptCloth cloth = m_solve.kept().clothOf(kept.m_step);
+        cloth.m_start = 3 * cl_uint(scene.m_cloths.existing(kept.m_cloth).m_firstVertex);
+        cloth.m_end = cl_uint(scene.m_clothNodes.room()) + cloth.m_start;
+        cloths.push_back(cloth);
+    }
+    m_solve.kept().predict(cloths, m_cloths.nodes());
 }
 
 SelfContactStage::Input DeviceBackend::selfInput(const Scene& scene, const StepPairs& pairs) const

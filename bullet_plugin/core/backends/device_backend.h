@@ -64,6 +64,8 @@ private:
     void updateTopology(const Scene& scene);
     // Makes room for unsorted contacts and for sorted ones.
     void reserveContacts(std::size_t count);
+    // Predicts cloths whose nodes stay on the device.
+    void predictKept(const Scene& scene, const StepPairs& pairs);
     void uploadStep(const Scene& scene, const StepPairs& pairs, std::size_t sent);
     void enqueueStep(const Scene& scene, const StepPairs& pairs);
     Buffer<StepCounters>& counters() { return m_counters[m_turn]; }

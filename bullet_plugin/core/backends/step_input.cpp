@@ -37,6 +37,8 @@ void StepInput::collect(Scene& scene, float activation, StepPairs& step, StepSta
     step.m_anyPair = !m_pairs.empty() && !cloths.triangles().empty() && !obstacles.triangles().empty();
     collectSelf(cloths, activation, step);
     step.m_any = step.m_anyPair || step.m_anySelf;
+    step.m_kept = std::move(m_kept);
+    m_kept.clear();
     m_pairs.clear();
     m_selfCloths.clear();
 }

@@ -32,6 +32,7 @@ public:
     // Name meshes for the coming step.
     void addPair(const NamedPair& pair) { m_pairs.push_back(pair); }
     void addSelf(MeshId cloth) { m_selfCloths.push_back(cloth); }
+    void addKept(const KeptInput& kept) { m_kept.push_back(kept); }
 
     bool empty() const { return m_pairs.empty() && m_selfCloths.empty(); }
     const std::vector<NamedPair>& pairs() const { return m_pairs; }
@@ -51,6 +52,7 @@ private:
 
     std::vector<NamedPair> m_pairs;
     std::vector<MeshId> m_selfCloths;
+    std::vector<KeptInput> m_kept;
     std::vector<bool> m_paired;  // per obstacle slot, with any cloth in the step
 };
 }  // namespace drape

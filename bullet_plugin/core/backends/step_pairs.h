@@ -5,11 +5,20 @@
 #include <vector>
 
 #include "bullet_plugin/core/cloth_cloth/self_step.h"
+#include "bullet_plugin/core/scene/mesh_id.h"
+#include "bullet_plugin/core/solver/kept_step.h"
 #include "kernels/shared/motion.h"
 #include "ordinary_tests.h"
 
 namespace drape
 {
+// A cloth whose nodes are on the device, and its step.
+struct KeptInput
+{
+    MeshId m_cloth;
+    KeptStep m_step;
+};
+
 struct StepPairs
 {
     std::vector<float> m_thickness;         // m, cloth slots × obstacle slots, -1 without a pair
@@ -18,9 +27,10 @@ struct StepPairs
     std::vector<TestLimits> m_ordinary;     // per cloth slot: what its pairs need in ordinary motion
     TestLimits m_limits;                    // the step's limits, over patches
     SelfReach m_self;
-    bool m_anyPair = false;  // cloth and obstacle
-    bool m_anySelf = false;  // cloth and itself
-    bool m_any = false;      // either
+    std::vector<KeptInput> m_kept;  // cloths whose nodes are on the device
+    bool m_anyPair = false;         // cloth and obstacle
+    bool m_anySelf = false;         // cloth and itself
+    bool m_any = false;             // either
 
     // Returns the number of obstacle slots when the pairs were collected.
     std::size_t obstacleSlots() const { return m_thickness.size() / m_clothRadius.size(); }

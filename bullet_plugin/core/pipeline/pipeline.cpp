@@ -28,7 +28,6 @@ struct Pipeline::Implementation
         m_nodes.forget();
         m_scene.join(m_backends.device());
     }
-    bool mayStay();
 
     const Settings m_settings;
     const std::shared_ptr<ThreadTeam> m_threads;
@@ -194,10 +193,17 @@ void Pipeline::addSelf(MeshId cloth)
     m_implementation->m_input.addSelf(cloth);
 }
 
-// Returns whether a step's contacts may stay on the device.
-bool Pipeline::Implementation::mayStay()
+void Pipeline::addKept(MeshId cloth, const KeptStep& step)
 {
-    return m_backends.chosenDevice() && m_pairs.m_any && !m_pairs.m_anySelf && !hasOneSided(m_scene);
+    m_implementation->m_input.addKept({cloth, step});
+}
+
+bool Pipeline::mayStay()
+{
+    Implementation& self = *m_implementation;
+    self.join();
+    self.m_backends.choose(self.m_scene, self.m_input);
+    return self.m_backends.chosenDevice() && self.m_input.selfCloths().empty() && !hasOneSided(self.m_scene);
 }
 
 void Pipeline::submit(ContactPlace place)
@@ -205,11 +211,9 @@ void Pipeline::submit(ContactPlace place)
     Implementation& self = *m_implementation;
     Stopwatch watch;
     self.m_statistics = StepStatistics();
-    self.join();
-    self.m_backends.choose(self.m_scene, self.m_input);
+    self.m_place = mayStay() ? place : ContactPlace::Host;
     self.m_input.collect(self.m_scene, self.m_settings.m_activation, self.m_pairs, self.m_statistics);
     self.m_submitted = true;
-    self.m_place = self.mayStay() ? place : ContactPlace::Host;
     self.m_runner.submit(self.m_place, self.m_nodes.sent());
     if (self.m_pairs.m_any && self.m_backends.chosenDevice())
         self.m_nodes.passToStep();
@@ -221,7 +225,7 @@ void Pipeline::submit(ContactPlace place)
 DeviceContacts Pipeline::contactsOnDevice()
 {
     Implementation& self = *m_implementation;
-    const bool stay = self.m_submitted && self.m_place == ContactPlace::Device && self.m_backends.chosenDevice();
+    const bool stay = self.m_submitted && self.m_pairs.m_any && self.m_place == ContactPlace::Device;
     return stay ? self.m_backends.chosenDevice()->contactsOnDevice() : DeviceContacts();
 }
 
@@ -302,6 +306,13 @@ const std::shared_ptr<ThreadTeam>& Pipeline::threads() const
 SolveStage* Pipeline::solveStage(std::size_t nodes)
 {
     return m_implementation->m_backends.solveStage(nodes);
+}
+
+bool Pipeline::waitForDevice()
+{
+    Device* const device = m_implementation->m_backends.device();
+    if (device) device->wait();
+    return device && !device->failed();
 }
 
 std::size_t Pipeline::deviceWaits() const

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "bullet_plugin/core/ordering/contact_list.h"
+#include "bullet_plugin/core/solver/kept_step.h"
 #include "bullet_plugin/core/threads/thread_team.h"
 #include "contact_view.h"
 #include "drape/error.h"
@@ -112,6 +113,12 @@ public:
     // are swept over the step like contacts with obstacles (Settings::m_mode); see kernels/lib/self_contact.h.
     void addSelf(MeshId cloth);
 
+    // Declares that a cloth's nodes are on the device (SolveStage::kept()), where the coming step predicts them. Its
+    // contacts must stay there: see mayStay().
+    void addKept(MeshId cloth, const KeptStep& step);
+    // Returns whether contacts of the step that is named so far may stay on the device.
+    bool mayStay();
+
     // Enqueues the step for the pairs named since the last finish(); returns without waiting. place: Device asks that
     // the contacts stay on the device that finds them, for commands enqueued behind the step. The host's own contacts,
     // and those of a step with one-sided obstacles or cloths that collide with themselves, go to the host.
@@ -148,6 +155,8 @@ public:
     // Returns the stage that solves cloths on a device; null if the host should (Settings::m_solverPlace). nodes: the
     // number in all cloths.
     SolveStage* solveStage(std::size_t nodes);
+    // Waits for all work enqueued so far. Returns false without a device, or if it failed.
+    bool waitForDevice();
     // Returns how often the host has waited for the device; 0 without one.
     std::size_t deviceWaits() const;
     // Returns whether a device failed, so that the host runs every step from then on.

@@ -6,6 +6,7 @@
 // use. Adding or removing therefore costs in proportion to the mesh, not the pool. Host memory only.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -87,6 +88,11 @@ public:
     std::size_t presentTriangles() const { return m_triangleCount - m_vacantTriangles; }
     // Counts the same triangles, without those that stand for edges and points.
     std::size_t presentFaces() const { return m_faceCount; }
+    std::size_t presentMeshes() const
+    {
+        return std::size_t(
+            std::count_if(m_meshes.begin(), m_meshes.end(), [](const PooledMesh& mesh) { return !mesh.m_vacant; }));
+    }
 
     std::size_t vertexCount() const { return m_vertexCount; }
     const std::vector<Triangle>& triangles() const { return m_triangles; }

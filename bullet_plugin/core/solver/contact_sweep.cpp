@@ -50,6 +50,11 @@ void ContactSweep::begin()
     m_cloth.m_retreat = contacts().m_limit.mostCarried(nodes());
 }
 
+float levelMargin(float farthest, float mostThickness)
+{
+    return kRounding * (farthest + mostThickness);
+}
+
 float levelMargin(const ClothContacts& contacts)
 {
     const SolverNodes& nodes = contacts.m_nodes;
@@ -59,7 +64,7 @@ float levelMargin(const ClothContacts& contacts)
         const float far = drapeMax(vec3NormMax(nodes.start(i)), vec3NormMax(nodes.end(i)));
         if (far <= DRAPE_FARTHEST) farthest = std::max(farthest, far);  // other nodes have no contacts
     }
-    return kRounding * (farthest + contacts.m_mostThickness);
+    return levelMargin(farthest, contacts.m_mostThickness);
 }
 
 // Limits the motion of a leaf's nodes. Only for cloths whose limit needs no other nodes.

@@ -23,6 +23,8 @@ namespace drape
 {
 // Returns a bound on the rounding difference between the two computations of a violation, m.
 float levelMargin(const ClothContacts& contacts);
+// Returns the same for nodes whose coordinates are at most `farthest`, m.
+float levelMargin(float farthest, float mostThickness);
 
 // Contacts of one cloth, as SweepTeam processes them.
 class ContactSweep

@@ -56,7 +56,7 @@ MotionLimit::Allowance MotionLimit::allowance(const Region& region, std::size_t 
 
 bool MotionLimit::anyOffPath(const SolverNodes& nodes)
 {
-    const float most = kFreeShare * m_leastReach;
+    const float most = freeDistance();
     m_farNodes.clear();
     for (std::size_t i = 0; i < nodes.count(); ++i)
     {
@@ -89,6 +89,23 @@ float MotionLimit::mostCarried(const SolverNodes& nodes, Carried which) const
         {
             if (which == Carried::ContactNodes && !m_hasContact[i]) continue;
             const Vec3 carried = vec3Sub(region.m_carry.start(i, nodes.start(i)), nodes.start(i));
+            most2 = std::max(most2, vec3Dot(carried, carried));
+        }
+    }
+    return std::sqrt(most2);
+}
+
+// The displacement is affine in the start, so that a corner has the largest one.
+float MotionLimit::mostCarried(Vec3 low, Vec3 high) const
+{
+    float most2 = 0;
+    for (const Region& region : m_regions)
+    {
+        for (int corner = 0; region.m_carry.moves() && corner < 8; ++corner)
+        {
+            const Vec3 start =
+                vec3(corner & 1 ? high.x : low.x, corner & 2 ? high.y : low.y, corner & 4 ? high.z : low.z);
+            const Vec3 carried = vec3Sub(region.m_carry.start(0, start), start);
             most2 = std::max(most2, vec3Dot(carried, carried));
         }
     }

@@ -83,6 +83,10 @@ public:
         AllNodes
     };
     float mostCarried(const SolverNodes& nodes, Carried which = Carried::ContactNodes) const;
+    // Returns a bound on the same for nodes that start in the box, m.
+    float mostCarried(Vec3 low, Vec3 high) const;
+    // Returns the distance from its path's end within which no node can have passed a surface without a contact, m.
+    float freeDistance() const { return kFreeShare * m_leastReach; }
     // Limits a node while the obstacles rest, if it has contacts: it stays within the path tolerance of the thinnest
     // pair.
     void keepNear(SolverNodes& nodes, std::size_t node) const;

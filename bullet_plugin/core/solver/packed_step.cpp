@@ -62,7 +62,29 @@ void PackedStep::packRegions(const ClothContacts& contacts, const ContactSource&
     }
 }
 
-void PackedStep::packCloth(std::size_t index, const ContactSource& source)
+// Sets how far the nodes are from the origin, and how far moving obstacles carry them.
+void PackedStep::packReach(const SolverCloth& cloth, const ContactSource& source, const SolveStage& stage,
+                           SolveCloth& packed) const
+{
+    const ClothContacts& contacts = *cloth.m_contacts;
+    if (contacts.m_obstacles.empty()) return;
+    if (!cloth.m_kept)
+    {
+        const auto which =
+            source.onDevice().m_list ? MotionLimit::Carried::AllNodes : MotionLimit::Carried::ContactNodes;
+        packed.m_margin = levelMargin(contacts);
+        packed.m_retreat = contacts.m_limit.mostCarried(contacts.m_nodes, which);
+        return;
+    }
+    const KeptBoxes& boxes = stage.kept().boxes(cloth.m_kept->m_id);
+    float farthest = 0;
+    for (std::size_t k = 0; k < 3 * DRAPE_KEPT_BOXES; ++k)
+        farthest = std::max({farthest, drapeAbs(boxes.m_low[k / 3][k % 3]), drapeAbs(boxes.m_high[k / 3][k % 3])});
+    packed.m_margin = levelMargin(farthest, contacts.m_mostThickness);
+    packed.m_retreat = contacts.m_limit.mostCarried(vec3Load(boxes.m_low[0], 0), vec3Load(boxes.m_high[0], 0));
+}
+
+void PackedStep::packCloth(std::size_t index, const ContactSource& source, const SolveStage& stage)
 {
     const ClothContacts& contacts = *m_cloths[index].m_contacts;
     const Substeps& substeps = *m_cloths[index].m_substeps;
@@ -89,13 +111,7 @@ void PackedStep::packCloth(std::size_t index, const ContactSource& source)
     cloth.m_nearDistance = kNearShare * contacts.m_leastThickness;
     cloth.m_sure = limit.sureDistance();
     cloth.m_leastTolerance = limit.leastTolerance();
-    if (!contacts.m_obstacles.empty())
-    {
-        cloth.m_margin = levelMargin(contacts);
-        const bool isKnown = !source.onDevice().m_list;
-        cloth.m_retreat = limit.mostCarried(
-            contacts.m_nodes, isKnown ? MotionLimit::Carried::ContactNodes : MotionLimit::Carried::AllNodes);
-    }
+    packReach(m_cloths[index], source, stage, cloth);
     packRegions(contacts, source, cloth);
     m_clothRecords.push_back(cloth);
 }
@@ -121,10 +137,12 @@ void PackedStep::layOut(const ContactSource& source, SolveStage& stage)
     layout.m_progress = work.add<SolveProgress>(cloths);
     layout.m_allowances = work.add<SolveAllowance>(nodes);
     m_step.m_clearedWords = work.words();
-    layout.m_nodes = work.add<SolverNode>(nodes);
-    layout.m_states = work.add<NodeState>(nodes);
     layout.m_results = work.add<SolveResult>(cloths);
     m_step.m_resultWords = work.words() - m_step.m_clearedWords;
+    layout.m_nodes = work.add<SolverNode>(nodes);
+    layout.m_states = work.add<NodeState>(nodes);
+    const bool allKept = m_step.m_kept.size() == m_cloths.size();
+    if (!allKept) m_step.m_resultWords = work.words() - m_step.m_clearedWords;
     layout.m_paths = work.add<NodePath>(nodes);
     layout.m_accelerations = work.add<Vec3>(nodes);
     layout.m_sorted = work.add<SolveContact>(contacts);
@@ -142,12 +160,29 @@ void PackedStep::layOut(const ContactSource& source, SolveStage& stage)
     copyToWords(words, layout.m_obstacles, m_obstacles.data(), m_obstacles.size());
     for (std::size_t i = 0; i < m_cloths.size(); ++i)
     {
+        if (m_cloths[i].m_kept) continue;
         const SolverNodes& cloth = m_cloths[i].m_contacts->m_nodes;
         const std::size_t first = m_clothRecords[i].m_nodes.m_first;
         copyToWords(words, layout.m_givenPaths + first * sizeof(NodePath) / sizeof(*words), cloth.paths(),
                     cloth.count());
         copyToWords(words, layout.m_givenAccelerations + first * sizeof(Vec3) / sizeof(*words),
                     m_cloths[i].m_substeps->accelerations(), cloth.count());
+    }
+}
+
+// Lists the cloths whose nodes stay on the device.
+void PackedStep::packKept(const SolveStage& stage)
+{
+    m_step.m_kept.clear();
+    m_keptSteps.clear();
+    for (std::size_t i = 0; i < m_cloths.size(); ++i)
+    {
+        if (!m_cloths[i].m_kept) continue;
+        KeptCloth kept = stage.kept().clothOf(*m_cloths[i].m_kept);
+        kept.m_solved = m_clothRecords[i].m_nodes.m_first;
+        kept.m_mostOffPath = m_cloths[i].m_contacts->m_limit.freeDistance();
+        m_step.m_kept.push_back(kept);
+        m_keptSteps.push_back(*m_cloths[i].m_kept);
     }
 }
 
@@ -190,7 +225,8 @@ void PackedStep::pack(const std::vector<SolverCloth>& cloths, const ContactSourc
     for (std::size_t slot = 0; source.pipeline() && slot < source.pipeline()->obstacles().meshCount(); ++slot)
         m_obstacles.push_back(source.pipeline()->obstacles().begin(slot));
     for (std::size_t i = 0; i < m_cloths.size(); ++i)
-        packCloth(i, source);
+        packCloth(i, source, stage);
+    packKept(stage);
     layOut(source, stage);
     describeLaunches();
 }
@@ -203,8 +239,15 @@ const SolveResult* PackedStep::resultsIn(const SolveWorkWord* words) const
 bool PackedStep::mustRepeat(const SolveWorkWord* words) const
 {
     const SolveResult* const results = resultsIn(words);
-    return std::any_of(results, results + m_cloths.size(),
-                       [](const SolveResult& result) { return result.m_meets != 0 || result.m_refused != 0; });
+    for (std::size_t i = 0; i < m_cloths.size(); ++i)
+        if (results[i].m_meets || results[i].m_refused || (m_cloths[i].m_kept && results[i].m_mayHavePassed))
+            return true;
+    return false;
+}
+
+void PackedStep::acceptKept(SolveStage& stage) const
+{
+    if (!m_keptSteps.empty()) stage.kept().accept(m_keptSteps);
 }
 
 void PackedStep::unpack(const SolveWorkWord* words, std::vector<SolverCloth>& refused) const
@@ -219,6 +262,7 @@ void PackedStep::unpack(const SolveWorkWord* words, std::vector<SolverCloth>& re
     {
         SolverNodes& nodes = m_cloths[i].m_contacts->m_nodes;
         const std::size_t first = m_clothRecords[i].m_nodes.m_first;
+        if (m_cloths[i].m_kept) continue;
         if (results[i].m_refused)
         {
             refused.push_back(m_cloths[i]);

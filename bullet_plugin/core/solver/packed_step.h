@@ -22,13 +22,20 @@ public:
     // Packs cloths that fit. They must stay in place until unpack().
     void pack(const std::vector<SolverCloth>& cloths, const ContactSource& source, SolveStage& stage);
     const SolveStep& step() const { return m_step; }
-    // Returns whether the cloths must be solved again: a path meets a surface, or the device could not solve one.
+    // Returns whether the cloths must be solved again: a path meets a surface, the device could not solve one, or one
+    // whose nodes stay there may have passed a surface.
     bool mustRepeat(const SolveWorkWord* words) const;
+    bool anyKept() const { return !m_keptSteps.empty(); }
+    // Accepts the step for cloths whose nodes stay on the device.
+    void acceptKept(SolveStage& stage) const;
     // Gives the cloths' nodes the device's result. Adds the cloths that it could not solve to `refused`.
     void unpack(const SolveWorkWord* words, std::vector<SolverCloth>& refused) const;
 
 private:
-    void packCloth(std::size_t index, const ContactSource& source);
+    void packCloth(std::size_t index, const ContactSource& source, const SolveStage& stage);
+    void packReach(const SolverCloth& cloth, const ContactSource& source, const SolveStage& stage,
+                   SolveCloth& packed) const;
+    void packKept(const SolveStage& stage);
     void packRegions(const ClothContacts& contacts, const ContactSource& source, SolveCloth& cloth);
     void layOut(const ContactSource& source, SolveStage& stage);
     void describeLaunches();
@@ -42,5 +49,6 @@ private:
     std::vector<SolveSurface> m_surfaces;
     std::vector<SolveRegion> m_regions;
     std::vector<MeshOffsets> m_obstacles;
+    std::vector<KeptStep> m_keptSteps;
 };
 }  // namespace drape

@@ -22,6 +22,7 @@ void SolveStage::create(Device& device, const ProgramLoader& load)
     m_sweepLeaves.create(device, cloths);
     m_sweepGroups.create(device, groups);
     m_passNodes.create(device, groups);
+    m_kept.create(device, load);
     m_device = &device;
 }
 
@@ -67,6 +68,7 @@ void SolveStage::orderContacts(const SolveStep& step)
                       contacts(), m_work);
     };
     launch(m_takePaths, step.m_layout.m_nodeCount);
+    if (!step.m_kept.empty()) m_kept.takePaths(step.m_kept, step.m_layout, m_topology, m_work);
     if (!hasContacts()) return;
     const std::size_t count =
         std::max(isOnDevice() ? step.m_onDevice.m_expected : step.m_contacts.size(), std::size_t(1));
@@ -218,6 +220,7 @@ void SolveStage::endLarge(std::uint32_t sweeps)
 
 void SolveStage::readResults()
 {
+    if (!m_step->m_kept.empty()) m_kept.keep(m_step->m_layout, m_topology, m_work);
     const std::size_t words = m_step->m_resultWords;
     if (m_resultRead->capacity() < words) m_resultRead->reserve(m_device, words + words / 4);
     m_work.read(*m_device, m_resultRead->data(), words, m_step->m_clearedWords);

@@ -13,6 +13,7 @@
 #include "bullet_plugin/core/ordering/contact_list.h"
 #include "kernels/lib/closing_sweeps.h"
 #include "kernels/solver/solver_bindings.h"
+#include "kept_nodes.h"
 #include "packed_topology.h"
 #include "revision.h"
 
@@ -33,6 +34,7 @@ struct SolveStep
     std::size_t m_mostNodes = 0;     // nodes of the largest leaf
     std::size_t m_clearedWords = 0;  // words at the start of the working memory that begin as 0
     std::size_t m_resultWords = 0;   // words behind them that are read back
+    std::vector<KeptCloth> m_kept;   // cloths whose nodes stay on the device
     std::size_t m_workWords = 0;
     // Groups of cloths with one leaf, and levels of large cloths, from the leaves on.
     SolveRange m_small = {}, m_whole = {};
@@ -50,6 +52,10 @@ public:
     bool created() const { return m_device != nullptr; }
     // Differs from that of every stage before and after in which the last step's topology is lost.
     std::uint64_t revision() const { return m_revision; }
+
+    // Nodes that stay on the device from step to step.
+    KeptNodes& kept() { return m_kept; }
+    const KeptNodes& kept() const { return m_kept; }
 
     // Host memory for the coming step's input, pinned if the device has such.
     SolveInputWord* input(std::size_t words);
@@ -105,5 +111,6 @@ private:
     std::unique_ptr<Staging<SolveInputWord>> m_inputWritten = std::make_unique<Staging<SolveInputWord>>();
     std::unique_ptr<Staging<SolveWorkWord>> m_resultRead = std::make_unique<Staging<SolveWorkWord>>();
     Contact m_head = {};  // head of the uploaded contacts
+    KeptNodes m_kept;
 };
 }  // namespace drape

@@ -7,6 +7,7 @@ namespace drape
 {
 class RigidRows;
 class Substeps;
+struct KeptStep;
 
 // Links that the caller solves, one iteration at a time. Calls come from the thread of StepSolver::solve(), except
 // read() and write(), which may come from any thread for several cloths at once.
@@ -29,6 +30,7 @@ struct SolverCloth
     ClothContacts* m_contacts = nullptr;
     Substeps* m_substeps = nullptr;
     ForeignLinks* m_links = nullptr;
-    RigidRows* m_rigid = nullptr;  // with m_substeps alone; null if there are none
+    RigidRows* m_rigid = nullptr;      // with m_substeps alone; null if there are none
+    const KeptStep* m_kept = nullptr;  // with m_substeps alone: the nodes are on the device, not in m_contacts
 };
 }  // namespace drape

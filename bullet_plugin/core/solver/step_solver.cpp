@@ -319,7 +319,7 @@ void StepSolver::keepMomenta(const std::vector<SolverCloth>& cloths, const std::
     for (const std::vector<SolverCloth>* all : {&cloths, &free})
         for (const SolverCloth& cloth : *all)
         {
-            if (!keepsMomentum(cloth)) continue;
+            if (cloth.m_kept || !keepsMomentum(cloth)) continue;
             m_keeping.push_back(&cloth);
             nodes += cloth.m_contacts->m_nodes.count();
         }
@@ -360,10 +360,11 @@ bool StepSolver::submitBehind(const std::vector<SolverCloth>& cloths, const std:
 }
 
 bool StepSolver::finishBehind(const std::vector<SolverCloth>& cloths, const std::vector<SolverCloth>& free,
-                              SolveStage& stage)
+                              SolveStage& stage, bool hasWaited)
 {
-    const SolveWorkWord* const result = stage.finish(true);
-    if (!result || m_packed.mustRepeat(result)) return false;
+    const SolveWorkWord* const result = stage.finish(hasWaited);
+    if (!result || m_packed.mustRepeat(result) || (m_packed.anyKept() && !stage.kept().isGood())) return false;
+    m_packed.acceptKept(stage);
     m_packed.unpack(result, m_refused);
     keepMomenta(cloths, free);
     return true;

@@ -63,13 +63,15 @@ public:
     // If the device fails, the host solves them all. Returns the number of cloths that the device solved.
     std::size_t solve(const std::vector<SolverCloth>& cloths, const std::vector<SolverCloth>& free,
                       const ContactSource& source, SolveStage* stage = nullptr);
-    // Enqueues the whole step of the cloths behind a detection whose contacts stay on the device. Returns false, with
-    // nothing enqueued, if the device cannot solve all of them.
+    // Enqueues the whole step of the cloths, behind a detection whose contacts stay on the device if there is one.
+    // Returns false, with nothing enqueued, if the device cannot solve all of them.
     bool submitBehind(const std::vector<SolverCloth>& cloths, const std::vector<SolverCloth>& free,
                       const ContactSource& source, SolveStage& stage);
-    // Takes over the results after the wait for that detection, which must have run once. Returns false, with the nodes
-    // as they were, if solve() must solve the step: a path meets a surface, or the device failed.
-    bool finishBehind(const std::vector<SolverCloth>& cloths, const std::vector<SolverCloth>& free, SolveStage& stage);
+    // Takes over the results. hasWaited: the host has waited for that detection, which must have run once. Returns
+    // false, with the nodes as they were, if solve() must solve the step: a path meets a surface, a cloth whose nodes
+    // stay on the device may have passed one, or the device failed.
+    bool finishBehind(const std::vector<SolverCloth>& cloths, const std::vector<SolverCloth>& free, SolveStage& stage,
+                      bool hasWaited);
     // Runs the closing sweeps alone, for cloths whose nodes are at the ends of the paths along which their contacts
     // were found.
     void close(const std::vector<SolverCloth>& cloths, const ContactSource& source);

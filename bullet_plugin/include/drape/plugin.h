@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "drape/node_arrays.h"
 #include "drape/precision.h"
 #include "drape/report.h"
 #include "drape/settings.h"
@@ -109,6 +110,27 @@ public:
     void release(const btCollisionObject* object);
     // Releases all objects of a world.
     void release(const btCollisionWorld& world);
+
+    // Leaves a soft body's nodes on the device from the end of its next step on, so that a step copies none of them.
+    // Bullet's nodes then stay as they are until fetch(). What an app sets in them meanwhile does not count, except
+    // positions of pinned nodes. To change the nodes, call fetch(), set them, and call this again: it takes the nodes
+    // as Bullet has them.
+    //
+    // A step that needs the nodes on the host brings them there by itself, and computes the same. It does so beside
+    // objects whose contacts Bullet's own algorithm finds, at impacts, in free fall, and with moved pins or another
+    // time step. StepStatistics::m_clothsAway counts the others.
+    //
+    // Returns an empty string, or why the body cannot be kept; "out of memory" if memory runs out. The body must live
+    // until `keep` is false, which fetches its nodes. If the device fails, the nodes of the last fetch() remain.
+    std::string keepOnDevice(btSoftBody& body, bool keep);
+    // Starts the transfer of a kept body's nodes to the host, and returns at once. The next fetch() takes these nodes,
+    // and waits only if no step followed.
+    void beginFetch(const btSoftBody& body);
+    // Gives Bullet's nodes of a kept body their positions, velocities and normals. Returns false, with nothing changed,
+    // if they were Bullet's already.
+    bool fetch(btSoftBody& body);
+    // Gives the same to arrays of the caller's. Returns false, with nothing written, if Bullet has the nodes.
+    bool fetch(const btSoftBody& body, const NodeArrays& arrays);
 
     // Announces that vertices of a mesh shape moved in place, and wakes soft bodies that sleep beside it. Drape notices
     // changed bounding boxes, scaling and sampled vertices without this call. The change is motion within the coming

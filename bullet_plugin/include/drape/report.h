@@ -187,6 +187,8 @@ struct StepStatistics : StepCounts, StepParts
     std::size_t m_clothsSkipped = 0;
     // Cloths whose links and contacts an OpenCL device solved (Settings::m_solverPlace).
     std::size_t m_clothsOnDevice = 0;
+    // Cloths whose nodes stayed on the device (Plugin::keepOnDevice()).
+    std::size_t m_clothsAway = 0;
     // Times that the host waited for the device. Once, if the device solves all cloths of the step and no path of a
     // node meets a surface.
     std::size_t m_deviceWaits = 0;

@@ -1,0 +1,88 @@
+// Bodies whose nodes stay on the device between steps (Plugin::keepOnDevice()).
+//
+// A kept body is away while the device's nodes are newer than Bullet's. Its step begins without nodes: the device
+// predicts it, and bounds come from boxes that the last step left. Where a step needs the nodes, the body comes home: it
+// gets the nodes of the last step's end, and the step goes on as for any body, with the same bits. At the step's end its
+// nodes are stored again. Cost of a step away: some comparisons, and one for each pinned node.
+//
+// Input: bodies that are alive; others are only compared. Errors: a device that fails leaves bodies with the nodes that
+// Bullet has.
+#pragma once
+
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "BulletSoftBody/btSoftBody.h"
+#include "bullet_plugin/core/solver/kept_step.h"
+#include "drape/node_arrays.h"
+
+namespace drape
+{
+class PluginState;
+class SolveStage;
+
+class KeptBodies
+{
+public:
+    explicit KeptBodies(PluginState& state) : m_state(state) {}
+
+    // Stores the body's nodes and keeps it from now on. Returns null, or why it cannot be kept.
+    const char* keep(btSoftBody& body);
+    // Gives the body its nodes and keeps it no more.
+    void release(btSoftBody& body);
+    // Starts the transfer of a body's nodes to the host.
+    void beginFetch(const btSoftBody& body);
+    // Gives Bullet's nodes, or the arrays, the nodes of beginFetch(), or those of the last step. Returns whether the
+    // body was away.
+    bool fetch(btSoftBody& body);
+    bool fetch(const btSoftBody& body, const NodeArrays& arrays);
+    // Gives all bodies their nodes as far as possible, and keeps none. Throws nothing.
+    void abandon() noexcept;
+
+    bool isAway(const btSoftBody& body) const;
+    // Returns whether any body's step has begun away.
+    bool anyBegun() const;
+    // Returns whether a node of the stored body is pinned.
+    bool hasPins(const btSoftBody& body) const;
+    // Begins a step of dt seconds of a body that is away. Returns false if it must come home first.
+    bool begin(btSoftBody& body, btScalar dt);
+    // Returns the step that was begun; null for a body that is at home.
+    const KeptStep* stepOf(const btSoftBody& body) const;
+    // Returns the boxes of that step.
+    const KeptBoxes& boxesOf(const btSoftBody& body) const;
+    // Gives the body the nodes of the last step's end. Waits.
+    void comeHome(btSoftBody& body);
+    // Returns whether a solver's step had contacts for the body when it was last away or stored.
+    bool hadPair(const btSoftBody& body) const;
+    // Ends a step: bodies at home are stored. hasPair: the step looked for contacts of the body.
+    void endStep(btSoftBody& body, bool hasPair);
+
+private:
+    struct Kept
+    {
+        KeptId m_id = 0;
+        std::uint64_t m_revision = 0;  // the stage's
+        bool m_isAway = false;
+        bool m_isBegun = false;  // m_step is the running step
+        bool m_hadPair = false;
+        KeptStep m_step;
+        KeptBoxes m_stored;  // boxes of nodes that were stored
+        bool m_isStored = false;
+        std::vector<int> m_pins;
+        std::vector<btVector3> m_pinnedAt;
+        bool m_isReading = false;
+        std::size_t m_waitsBefore = 0;
+    };
+
+    Kept* find(const btSoftBody& body);
+    const Kept* find(const btSoftBody& body) const;
+    SolveStage* stage() const;
+    void store(btSoftBody& body, Kept& kept);
+    const KeptNode* read(Kept& kept);
+    bool anyPinMoved(const btSoftBody& body, const Kept& kept) const;
+
+    PluginState& m_state;
+    std::unordered_map<const btSoftBody*, Kept> m_bodies;
+};
+}  // namespace drape

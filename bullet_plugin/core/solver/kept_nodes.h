@@ -1,0 +1,81 @@
+// Keeps nodes of cloths on a device between steps, and predicts their paths there (kernels/solver/kept_nodes.cl).
+//
+// Job: hold the nodes, with the masses, of each kept cloth; before a detection write their paths for it, and then for
+// the solver; after the solver take its result, and bound the next step. A result counts once it is accepted, so that a
+// step can be solved again from its start. Guarantee: the bits of a cloth whose nodes the host has. Errors: in the
+// device.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "bullet_plugin/core/device/bound_kernel.h"
+#include "kept_step.h"
+#include "kernels/solver/solver_bindings.h"
+
+namespace drape
+{
+class KeptNodes
+{
+public:
+    void create(Device& device, const ProgramLoader& load);
+
+    // Makes room for a cloth of so many nodes.
+    KeptId add(std::size_t count);
+    void remove(KeptId id);
+    std::size_t count(KeptId id) const { return m_slots[id].m_count; }
+    // Replaces the nodes. Waits.
+    void write(KeptId id, const std::vector<KeptNode>& nodes);
+    // Enqueues the transfer of the nodes to the host; they are at nodesRead() after a wait for the device. Allocates no
+    // memory.
+    void beginRead(KeptId id);
+    const KeptNode* nodesRead(KeptId id) const { return m_read->data() + m_slots[id].m_first; }
+
+    // Writes the paths of the cloths for the detection. Returns after enqueueing.
+    void predict(const std::vector<KeptCloth>& cloths, Buffer<float>& detected);
+    // Returns the record of a cloth in a step; places in the detection and the solver are left out.
+    KeptCloth clothOf(const KeptStep& step) const;
+    // Writes the paths for the solver.
+    void takePaths(const std::vector<KeptCloth>& cloths, const SolveLayout& layout,
+                   Buffer<SolveTopologyWord>& topology, Buffer<SolveWorkWord>& work);
+    // Takes the solver's result and reads the bounds. The arrays stay the caller's until a wait for the device.
+    void keep(const SolveLayout& layout, Buffer<SolveTopologyWord>& topology, Buffer<SolveWorkWord>& work);
+    // Returns whether the last result of keep() can be accepted, after the wait: no node left its path too far, and all
+    // numbers are finite.
+    bool isGood() const;
+    // Accepts the result for all cloths of the step.
+    void accept(const std::vector<KeptStep>& steps);
+    // Returns the boxes after the last accepted step of the cloth.
+    const KeptBoxes& boxes(KeptId id) const { return m_slots[id].m_boxes; }
+
+private:
+    struct Slot
+    {
+        std::size_t m_first = 0, m_count = 0;  // among the cloths' nodes
+        std::uint32_t m_turn = 0;              // which of two copies is valid
+        KeptBoxes m_boxes;
+        bool m_isUsed = false;
+    };
+
+    // Each cloth has two copies of its nodes, one behind the other.
+    cl_uint placeOf(const Slot& slot, std::uint32_t turn) const
+    {
+        return cl_uint(2 * slot.m_first + turn * slot.m_count);
+    }
+    std::size_t width(const std::vector<KeptCloth>& cloths);
+
+    Device* m_device = nullptr;
+    BoundKernel<kernels::predictKept> m_predict;
+    BoundKernel<kernels::takeKeptPaths> m_takePaths;
+    BoundKernel<kernels::keepNodes> m_keep;
+    std::vector<Slot> m_slots;
+    Buffer<KeptNode> m_nodes{"kept nodes"};
+    Buffer<KeptCloth> m_detected{"kept nodes"}, m_solved{"kept nodes"};  // records of the step, as each stage reads them
+    Buffer<KeptBounds> m_bounds{"kept nodes"};
+    std::vector<KeptCloth> m_detectedSent, m_solvedSent;
+    std::vector<KeptBounds> m_emptyBounds, m_boundsRead;
+    std::unique_ptr<Staging<KeptNode>> m_read = std::make_unique<Staging<KeptNode>>();
+    KeptLaunch m_launch = {};
+};
+}  // namespace drape

@@ -1,0 +1,253 @@
+// Bodies whose nodes stay on the device: the trajectories of bodies that Bullet has, whatever brings their nodes back.
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "kernels/lib/vec3.h"
+#include "scenes/shapes.h"
+#include "tests/bullet/drop_world.h"
+#include "tests/support/backends.h"
+
+namespace drape::test
+{
+namespace
+{
+constexpr int kSteps = 60;
+
+// A world with a sphere, and what a test does in it.
+struct Scene
+{
+    ClothSpec m_cloth;
+    std::function<void(DropWorld&, btSoftBody&)> m_add;                // further objects, pins and velocities
+    std::function<void(btRigidBody&, btSoftBody&, int)> m_beforeStep;  // moves the sphere or pins
+    btScalar m_friction = btScalar(0.5);
+};
+
+struct Outcome
+{
+    std::uint64_t m_hash = kHashStart;
+    int m_away = 0;            // steps that left the nodes on the device
+    std::string m_reason;      // why the body could not be kept
+    std::size_t m_status = 0;  // of all steps
+};
+
+std::uint64_t hashOfAll(const btSoftBody& body, std::uint64_t hash)
+{
+    hash = hashOf(body, hash);
+    for (int i = 0; i < body.m_nodes.size(); ++i)
+        for (int axis = 0; axis < 3; ++axis)
+            hash = (hash ^ drapeBits(float(body.m_nodes[i].m_v[axis]))) * 0x100000001b3ull;
+    return hash;
+}
+
+// fetchEvery: steps between two looks at the nodes.
+Outcome run(const Scene& scene, Settings settings, bool keeps, int fetchEvery = 10)
+{
+    settings.m_solver = Solver::Drape;
+    settings.m_solverPlace = keeps ? SolverPlace::Device : settings.m_solverPlace;
+    Plugin plugin(settings);
+    MeshShape shape(makeSphere(0.4f, 3));
+    DropWorld world(&plugin);
+    btRigidBody& obstacle = world.addKinematic(shape.shape());
+    obstacle.setFriction(scene.m_friction);
+    btSoftBody& cloth = world.addCloth(scene.m_cloth);
+    if (scene.m_add) scene.m_add(world, cloth);
+    Outcome result;
+    if (keeps) result.m_reason = plugin.keepOnDevice(cloth, true);
+    for (int step = 0; step < kSteps; ++step)
+    {
+        if (scene.m_beforeStep) scene.m_beforeStep(obstacle, cloth, step);
+        world.step();
+        result.m_away += plugin.statistics().m_clothsAway > 0;
+        result.m_status |= plugin.statistics().m_status;
+        if (step % fetchEvery != 0 && step != kSteps - 1) continue;
+        if (keeps) plugin.fetch(cloth);
+        result.m_hash = hashOfAll(cloth, result.m_hash);
+    }
+    if (keeps) plugin.keepOnDevice(cloth, false);
+    result.m_hash = hashOfAll(cloth, result.m_hash);
+    return result;
+}
+
+class KeptBodyTest : public BackendTest
+{
+protected:
+    // Runs the scene with and without keeping the cloth. Returns the steps in which it was away.
+    int expectSame(const Scene& scene) const
+    {
+        const Outcome home = run(scene, hostSettings(), false), away = run(scene, GetParam().m_settings, true);
+        EXPECT_EQ(away.m_reason, "");
+        EXPECT_EQ(home.m_hash, away.m_hash);
+        EXPECT_EQ(home.m_status, away.m_status);
+        EXPECT_EQ(home.m_away, 0);
+        return away.m_away;
+    }
+};
+
+ClothSpec clothOf(int nodes)
+{
+    ClothSpec spec;
+    spec.m_nodes = nodes;
+    spec.m_centre = btVector3(0, btScalar(0.45), 0);
+    return spec;
+}
+
+TEST_P(KeptBodyTest, ClothComesToRestAsAtHome)
+{
+    EXPECT_GT(expectSame({clothOf(17), nullptr, nullptr}), kSteps / 2);
+}
+
+TEST_P(KeptBodyTest, LargeClothMovesAsAtHome)
+{
+    EXPECT_GT(expectSame({clothOf(60), nullptr, nullptr}), kSteps / 4);
+}
+
+TEST_P(KeptBodyTest, AMovingObstacleCarriesClothAsAtHome)
+{
+    Scene scene = {clothOf(17), nullptr, nullptr};
+    scene.m_beforeStep = [](btRigidBody& sphere, btSoftBody&, int step)
+    {
+        btTransform pose(btQuaternion(btVector3(0, 1, 0), btScalar(0.02) * btScalar(step)));
+        pose.setOrigin(btVector3(btScalar(0.005) * btScalar(step), 0, 0));
+        sphere.setWorldTransform(pose);
+    };
+    EXPECT_GT(expectSame(scene), kSteps / 4);
+}
+
+// The device solves it without a detection.
+TEST_P(KeptBodyTest, AFlagWithoutObstaclesMovesAsAtHome)
+{
+    Scene scene = {clothOf(17), nullptr, nullptr};
+    scene.m_cloth.m_centre = btVector3(5, 5, 0);
+    scene.m_add = [](DropWorld&, btSoftBody& cloth)
+    {
+        cloth.setMass(0, 0);
+        cloth.setMass(16, 0);
+    };
+    EXPECT_EQ(expectSame(scene), kSteps - 1);
+}
+
+// The host keeps its momentum, so that it never leaves.
+TEST_P(KeptBodyTest, ClothInFreeFallMovesAsAtHome)
+{
+    Scene scene = {clothOf(9), nullptr, nullptr};
+    scene.m_cloth.m_centre = btVector3(5, 50, 0);
+    EXPECT_EQ(expectSame(scene), 0);
+}
+
+TEST_P(KeptBodyTest, AnAppMovesPinsAsAtHome)
+{
+    Scene scene = {clothOf(17), nullptr, nullptr};
+    scene.m_add = [](DropWorld&, btSoftBody& cloth) { cloth.setMass(0, 0); };
+    scene.m_beforeStep = [](btRigidBody&, btSoftBody& cloth, int step)
+    {
+        if (step > 20 && step < 30) cloth.m_nodes[0].m_x += btVector3(0, btScalar(0.01), 0);
+    };
+    EXPECT_GT(expectSame(scene), kSteps / 4);
+}
+
+// Bullet's own algorithm finds the box; the nodes come home while it is near.
+TEST_P(KeptBodyTest, ABoxBringsClothHome)
+{
+    btBoxShape box(btVector3(btScalar(0.1), btScalar(0.1), btScalar(0.1)));
+    Scene scene = {clothOf(17), nullptr, nullptr};
+    scene.m_add = [&](DropWorld& world, btSoftBody&)
+    { world.addKinematic(box, btTransform(btQuaternion::getIdentity(), btVector3(btScalar(0.4), btScalar(0.2), 0))); };
+    EXPECT_LT(expectSame(scene), kSteps / 2);
+}
+
+// A plane's bounds are infinite, and another cloth's overlap. Neither touches it.
+TEST_P(KeptBodyTest, ClothStaysAwayOverAPlaneAndBesideAnotherCloth)
+{
+    btStaticPlaneShape plane(btVector3(0, 1, 0), -3);
+    Scene scene = {clothOf(17), nullptr, nullptr};
+    scene.m_add = [&](DropWorld& world, btSoftBody&)
+    {
+        world.addObstacle(plane);
+        ClothSpec other = clothOf(9);
+        other.m_centre.setY(btScalar(0.6));
+        world.addCloth(other);
+    };
+    EXPECT_GT(expectSame(scene), kSteps / 4);
+}
+
+TEST_P(KeptBodyTest, ArraysHaveTheNodesOfTheStepThatAskedForThem)
+{
+    Settings settings = GetParam().m_settings;
+    settings.m_solver = Solver::Drape;
+    settings.m_solverPlace = SolverPlace::Device;
+    Plugin plugin(settings);
+    MeshShape shape(makeSphere(0.4f, 3));
+    DropWorld world(&plugin);
+    world.addKinematic(shape.shape());
+    btSoftBody& cloth = world.addCloth(clothOf(17));
+    const std::size_t count = 3 * static_cast<std::size_t>(cloth.m_nodes.size());
+    std::vector<float> now(count), later(count), velocities(count), normals(count);
+    EXPECT_FALSE(plugin.fetch(cloth, {now.data(), nullptr, nullptr}));
+    ASSERT_EQ(plugin.keepOnDevice(cloth, true), "");
+    for (int step = 0; step < 40; ++step)
+        world.step();
+    ASSERT_TRUE(plugin.fetch(cloth, {now.data(), nullptr, nullptr}));
+    plugin.beginFetch(cloth);
+    world.step();
+    ASSERT_TRUE(plugin.fetch(cloth, {later.data(), velocities.data(), normals.data()}));
+    EXPECT_EQ(now, later);
+    ASSERT_TRUE(plugin.fetch(cloth, {later.data(), velocities.data(), normals.data()}));
+    EXPECT_NE(now, later);
+    ASSERT_TRUE(plugin.fetch(cloth));
+    for (int i = 0; i < cloth.m_nodes.size(); ++i)
+        for (int axis = 0; axis < 3; ++axis)
+        {
+            const std::size_t at = 3 * std::size_t(i) + std::size_t(axis);
+            EXPECT_EQ(cloth.m_nodes[i].m_x[axis], later[at]);
+            EXPECT_EQ(cloth.m_nodes[i].m_v[axis], velocities[at]);
+            EXPECT_NEAR(cloth.m_nodes[i].m_n[axis], normals[at], 1e-5);
+        }
+}
+
+TEST_P(KeptBodyTest, NodesThatAnAppSetsAreTakenOnRequest)
+{
+    const auto runWith = [&](bool keeps)
+    {
+        Settings settings = keeps ? GetParam().m_settings : hostSettings();
+        settings.m_solver = Solver::Drape;
+        settings.m_solverPlace = keeps ? SolverPlace::Device : SolverPlace::Host;
+        Plugin plugin(settings);
+        MeshShape shape(makeSphere(0.4f, 3));
+        DropWorld world(&plugin);
+        world.addKinematic(shape.shape());
+        btSoftBody& cloth = world.addCloth(clothOf(17));
+        if (keeps) plugin.keepOnDevice(cloth, true);
+        for (int step = 0; step < 60; ++step)
+        {
+            if (step == 30)
+            {
+                if (keeps) plugin.fetch(cloth);
+                cloth.addVelocity(btVector3(btScalar(0.3), 0, 0));
+                if (keeps) plugin.keepOnDevice(cloth, true);
+            }
+            world.step();
+        }
+        if (keeps) plugin.fetch(cloth);
+        return hashOfAll(cloth, kHashStart);
+    };
+    EXPECT_EQ(runWith(false), runWith(true));
+}
+
+TEST_P(KeptBodyTest, AReasonIsGivenWhereNothingIsKept)
+{
+    Settings settings = GetParam().m_settings;
+    settings.m_solverPlace = SolverPlace::Device;
+    Plugin plugin(settings);
+    DropWorld world(&plugin);
+    btSoftBody& cloth = world.addCloth(clothOf(9));
+    cloth.m_cfg.kPR = 1;
+    EXPECT_NE(plugin.keepOnDevice(cloth, true), "");
+    Plugin host(hostSettings());
+    cloth.m_cfg.kPR = 0;
+    EXPECT_NE(host.keepOnDevice(cloth, true), "");
+}
+
+INSTANTIATE_TEST_SUITE_P(Devices, KeptBodyTest, testing::ValuesIn(openClBackends()), backendName);
+}  // namespace
+}  // namespace drape::test
