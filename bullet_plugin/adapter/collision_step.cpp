@@ -157,7 +157,7 @@ void CollisionStep::uploadNodes(Detection detection)
     for (const Upload& upload : m_uploads)
     {
         const BodyContacts& body = m_bodies[upload.m_body];
-        if (body.m_isAway && detection == Detection::Check) continue;
+        if (detection != Detection::First && !isDetected(body, detection)) continue;
         if (body.m_isAway)
             m_state.pipeline().addKept(upload.m_mesh, *m_state.m_kept.stepOf(*body.m_body));
         else
@@ -196,6 +196,7 @@ void CollisionStep::recordPaths()
 {
     for (BodyContacts& body : m_bodies)
     {
+        if (body.m_contacts.m_isSolved) continue;
         bringHome(body);
         for (std::size_t i = 0; i < body.nodes().count(); ++i)
             recordPath(body.m_body->m_nodes[static_cast<int>(i)], i, body.nodes());
@@ -211,10 +212,11 @@ void CollisionStep::bringHome(BodyContacts& body)
 
 void CollisionStep::begin(const std::vector<PairNote>& notes, BringHome bringHome)
 {
+    const auto neededHost = [](const BodyContacts& body) { return body.m_meetsSurface; };
+    const auto count = std::count_if(m_bodies.begin(), m_bodies.end(), neededHost);
+    m_neededHost = 2 * static_cast<std::size_t>(count) > m_bodies.size();
     clear();
     m_bringHome = std::move(bringHome);
-    m_metBefore = m_meetsSurface;
-    m_meetsSurface = m_wasSolved = false;
     m_uploadMs = 0;
     m_state.m_found.clear();
     // Adding and removing meshes moves the memory that nodes are written to: mirrors first, nodes after.
@@ -241,13 +243,21 @@ void CollisionStep::submit(ContactPlace place)
     m_state.m_found.setOnDevice(m_state.pipeline(), m_state.pipeline().contactsOnDevice());
 }
 
-// Names the pairs of the coming detection. A body that is away is solved when others are checked, and was good.
+// Returns whether the body takes part in a detection: in the first one, in others until it is solved, and in checks if
+// it left its path.
+bool CollisionStep::isDetected(const BodyContacts& body, Detection detection) const
+{
+    if (body.m_leftOut) return false;
+    if (detection == Detection::Check) return body.m_isOffPath;
+    return detection == Detection::First || !body.m_contacts.m_isSolved;
+}
+
+// Names the pairs of the coming detection.
 void CollisionStep::namePairs(Detection detection)
 {
     for (const Pair& pair : m_pairs)
     {
-        const BodyContacts& body = *bodyOf(pair.m_cloth);
-        if (body.m_leftOut || (body.m_isAway && detection == Detection::Check)) continue;
+        if (!isDetected(*bodyOf(pair.m_cloth), detection)) continue;
         m_state.pipeline().addPair(pair.m_cloth, pair.m_obstacle, static_cast<float>(pair.m_thickness));
     }
 }
@@ -262,7 +272,7 @@ void CollisionStep::submit(Detection detection, ContactPlace place)
 
 // Takes the contacts of the current detection. If that holds bodies together, detects again and takes the new
 // contacts.
-void CollisionStep::receiveHeld(Detection detection, const std::function<bool()>& takeSolved)
+void CollisionStep::receiveHeld(Detection detection, const TakeSolved& takeSolved)
 {
     receiveAll(detection, takeSolved);
     if (!m_heldTogether) return;
@@ -281,8 +291,10 @@ void CollisionStep::receiveHeld(Detection detection, const std::function<bool()>
     m_heldTogether = false;
 }
 
-void CollisionStep::receive(const ContactList& contacts)
+void CollisionStep::receive(const ContactList& contacts, Detection detection)
 {
+    const auto isDone = [detection](const BodyContacts& body)
+    { return detection != Detection::Check && body.m_contacts.m_isSolved; };
     BodyContacts* body = nullptr;
     for (std::size_t i = 0; i < contacts.size();)
     {
@@ -292,7 +304,7 @@ void CollisionStep::receive(const ContactList& contacts)
         const std::size_t begin = i;
         while (i < contacts.size() && contacts[i].m_featureIndex == first.m_featureIndex)
             ++i;
-        if (!body || body->m_leftOut) continue;
+        if (!body || !isDetected(*body, detection) || isDone(*body)) continue;
         const std::uint32_t count = static_cast<std::uint32_t>(i - begin);
         const OrderedFeature& ordered = body->m_contacts.m_order->features()[cloth.m_index];
         if (body->m_tangled.empty())
@@ -301,7 +313,7 @@ void CollisionStep::receive(const ContactList& contacts)
             addHeldContacts(*body, &first, count, ordered);
     }
     for (BodyContacts& pushed : m_bodies)
-        addPushes(pushed);
+        if (!isDone(pushed)) addPushes(pushed);
 }
 
 // Contacts of one feature of the cloth.
@@ -311,7 +323,7 @@ void CollisionStep::addContacts(BodyContacts& body, const Contact* first, std::u
     FeatureContacts feature{first, count, &ordered, 1};
     for (std::uint32_t i = 0; i < count; ++i)
         feature.m_leastTime = std::min(feature.m_leastTime, first[i].m_time);
-    m_meetsSurface = m_meetsSurface || feature.m_leastTime < 1;
+    body.m_meetsSurface = body.m_meetsSurface || feature.m_leastTime < 1;
     for (int k = 0; k < 3 && ordered.m_nodes[k] >= 0; ++k)
         body.m_contacts.m_limit.addContactNode(ordered.m_nodes[k]);
     body.m_contacts.m_features.push_back(feature);
@@ -329,30 +341,32 @@ float CollisionStep::allowanceOf(MeshId cloth) const
     return isApart || body.m_heldTogether || body.m_obstacleJumps ? kMostAllowance : HUGE_VALF;
 }
 
-// Waits for the current detection. Sets wasSolved(), or returns the contacts.
-ContactList CollisionStep::waitForContacts(const std::function<bool()>& takeSolved)
+// Waits for the current detection. Returns its contacts, none if all bodies are solved.
+ContactList CollisionStep::waitForContacts(const TakeSolved& takeSolved)
 {
     Pipeline& pipeline = m_state.pipeline();
     const ContactList contacts = pipeline.finish([this](MeshId cloth) { return allowanceOf(cloth); });
-    const bool mayBeSolved = pipeline.areContactsOnDevice() && takeSolved && pipeline.ranOnce();
-    m_wasSolved = mayBeSolved && pipeline.statistics().m_invalidNodes == 0 && takeSolved();
-    if (m_wasSolved || !pipeline.areContactsOnDevice()) return contacts;
-    m_meetsSurface = true;  // or the like: the next step is likely to need the host, too
+    if (!pipeline.areContactsOnDevice()) return contacts;
+    if (takeSolved && pipeline.ranOnce() && pipeline.statistics().m_invalidNodes == 0) takeSolved();
+    const auto isSolved = [](const BodyContacts& body) { return body.m_contacts.m_isSolved; };
+    if (std::all_of(m_bodies.begin(), m_bodies.end(), isSolved)) return contacts;
+    for (BodyContacts& body : m_bodies)
+        body.m_meetsSurface = !isSolved(body);
     recordPaths();
     return pipeline.bringContacts();
 }
 
 // Waits for the current detection. Its contacts replace any earlier ones of this step.
-void CollisionStep::receiveAll(Detection detection, const std::function<bool()>& takeSolved)
+void CollisionStep::receiveAll(Detection detection, const TakeSolved& takeSolved)
 {
     for (BodyContacts& body : m_bodies)
         body.m_contacts.m_features.clear();
     const ContactList contacts = waitForContacts(takeSolved);
     addDetection(m_state.m_statistics, m_state.pipeline().statistics(), detection);
     markUnguarded();
-    if (m_wasSolved) return;
+    if (m_state.pipeline().areContactsOnDevice()) return;
     m_state.m_found.set(m_state.pipeline(), contacts);
-    receive(contacts);
+    receive(contacts, detection);
 }
 
 // Lists the body's contacts that its nodes' paths meet.
@@ -381,7 +395,7 @@ bool CollisionStep::cutPaths()
     return any;
 }
 
-void CollisionStep::finish(const std::function<bool()>& takeSolved)
+void CollisionStep::finish(const TakeSolved& takeSolved)
 {
     m_state.m_statistics = StepStatistics();
     m_state.m_statistics.m_skipped = m_pairs.empty();
@@ -393,7 +407,6 @@ void CollisionStep::finish(const std::function<bool()>& takeSolved)
     m_state.m_statistics.m_startIntersections = m_starts.intersections();
     if (m_starts.intersectingPairs() > 0) m_state.m_statistics.m_status |= kStepStartsIntersecting;
     receiveHeld(Detection::First, takeSolved);
-    if (m_wasSolved) return;
     for (int detections = 1; detections < kMostDetections && cutPaths(); ++detections)
     {
         namePairs(Detection::Again);
@@ -402,21 +415,21 @@ void CollisionStep::finish(const std::function<bool()>& takeSolved)
     }
 }
 
-bool CollisionStep::cutOffPath(const std::vector<bool>& offPath, Cut cut)
+bool CollisionStep::cutOffPath(Cut cut)
 {
     bool any = false;
-    for (std::size_t i = 0; i < m_bodies.size(); ++i)
-        if (offPath[i]) any = cutAtImpactsOf(m_bodies[i], cut) || any;
+    for (BodyContacts& body : m_bodies)
+        if (body.m_isOffPath) any = cutAtImpactsOf(body, cut) || any;
     return any;
 }
 
 // Reports bodies whose paths still pass a surface after the last cut. The next step checks them where they are,
 // except at nodes that the app moves.
-void CollisionStep::reportPassed(const std::vector<bool>& offPath)
+void CollisionStep::reportPassed()
 {
     for (std::size_t i = 0; i < m_bodies.size(); ++i)
     {
-        if (!offPath[i]) continue;
+        if (!m_bodies[i].m_isOffPath) continue;
         std::vector<SolverContact> impacts = impactsOf(m_bodies[i]);
         const SolverNodes& nodes = m_bodies[i].nodes();
         const auto isHeld = [&](const SolverContact& impact)
@@ -440,11 +453,15 @@ void CollisionStep::detectRealPaths()
 
 std::vector<BodyContacts*> CollisionStep::checkOffPath()
 {
-    std::vector<bool> offPath;
+    std::vector<BodyContacts*> bodies;
     for (BodyContacts& body : m_bodies)
-        offPath.push_back(!body.m_isAway && ((body.m_contacts.m_mayHavePassed && !body.m_wasTangled) ||
-                                             body.m_contacts.m_limit.anyOffPath(body.nodes())));
-    if (std::find(offPath.begin(), offPath.end(), true) == offPath.end()) return {};
+    {
+        const ClothContacts& contacts = body.m_contacts;
+        body.m_isOffPath = !body.m_isAway && ((contacts.m_mayHavePassed && !body.m_wasTangled) ||
+                                              body.m_contacts.m_limit.anyOffPath(body.nodes()));
+        if (body.m_isOffPath) bodies.push_back(&body);
+    }
+    if (bodies.empty()) return {};
     // Keeps the reported contacts as the solver received them.
     m_state.m_found.keepList();
     for (int detections = 1;; ++detections)
@@ -452,14 +469,13 @@ std::vector<BodyContacts*> CollisionStep::checkOffPath()
         detectRealPaths();
         if (detections > kMostDetections)
         {
-            reportPassed(offPath);
+            reportPassed();
             return {};
         }
-        if (!cutOffPath(offPath, detections < kMostDetections ? Cut::EachNode : Cut::WholeBody)) break;
+        if (!cutOffPath(detections < kMostDetections ? Cut::EachNode : Cut::WholeBody)) break;
     }
-    std::vector<BodyContacts*> bodies;
-    for (std::size_t i = 0; i < m_bodies.size(); ++i)
-        if (offPath[i] && !m_bodies[i].m_leftOut) bodies.push_back(&m_bodies[i]);
+    bodies.erase(std::remove_if(bodies.begin(), bodies.end(), [](const BodyContacts* body) { return body->m_leftOut; }),
+                 bodies.end());
     return bodies;
 }
 }  // namespace drape

@@ -29,17 +29,18 @@ public:
     void begin(const std::vector<PairNote>& notes, BringHome bringHome);
     // Returns whether there is anything to submit.
     bool hasPairs() const { return !m_pairs.empty(); }
-    // Returns whether a path met a surface in the step before, so that one is likely to do so in this step.
-    bool metSurface() const { return m_metBefore; }
+    // Returns whether most of the bodies had to be solved on the host in the step before, so that they are likely to be
+    // in this step: a path met a surface.
+    bool neededHost() const { return m_neededHost; }
     const std::vector<BodyContacts>& bodies() const { return m_bodies; }
     // Records the bodies' paths and enqueues the detection. place: where its contacts go, if possible.
     void submit(ContactPlace place);
     // Brings the body home if it is away.
     void bringHome(BodyContacts& body);
-    // takeSolved: called after the wait if the contacts are on the device. Returns whether commands enqueued behind the
-    // detection have solved the bodies; then no contacts are sorted, and wasSolved() is true. Null if there are none.
-    void finish(const std::function<bool()>& takeSolved = nullptr);
-    bool wasSolved() const { return m_wasSolved; }
+    // takeSolved: called after the wait if the contacts are on the device; marks bodies that commands enqueued behind
+    // the detection have solved (ClothContacts::m_isSolved). Their contacts are not sorted. Null if there are none.
+    using TakeSolved = std::function<void()>;
+    void finish(const TakeSolved& takeSolved = nullptr);
     // Detects again, once the bodies are solved, along the real paths of bodies whose links pulled nodes far off
     // their predicted paths. Ends those paths before anything that they would have passed. Returns these bodies, with
     // their contacts along the paths.
@@ -96,16 +97,17 @@ private:
     void namePairs(Detection detection);
     void listJumped();
     void submit(Detection detection, ContactPlace place = ContactPlace::Host);
-    ContactList waitForContacts(const std::function<bool()>& takeSolved);
-    void receiveAll(Detection detection, const std::function<bool()>& takeSolved = nullptr);
-    void receiveHeld(Detection detection, const std::function<bool()>& takeSolved = nullptr);
+    ContactList waitForContacts(const TakeSolved& takeSolved);
+    bool isDetected(const BodyContacts& body, Detection detection) const;
+    void receiveAll(Detection detection, const TakeSolved& takeSolved = nullptr);
+    void receiveHeld(Detection detection, const TakeSolved& takeSolved = nullptr);
     float allowanceOf(MeshId cloth) const;
-    void receive(const ContactList& contacts);
+    void receive(const ContactList& contacts, Detection detection);
     std::vector<SolverContact> impactsOf(const BodyContacts& body) const;
-    void reportPassed(const std::vector<bool>& offPath);
+    void reportPassed();
     bool cutAtImpactsOf(BodyContacts& body, Cut cut);
     bool cutPaths();
-    bool cutOffPath(const std::vector<bool>& offPath, Cut cut);
+    bool cutOffPath(Cut cut);
     BodyContacts* bodyOf(MeshId cloth);
     void addBody(ClothMirror& cloth, btSoftBody* body);
 
@@ -118,10 +120,9 @@ private:
     std::vector<const btSoftBody*> m_pinned;
     std::vector<ClothMirror*> m_mirrors;  // one for each of m_bodies
     std::vector<Upload> m_uploads;
-    bool m_heldTogether = false;                       // any body, since the last detection
-    double m_uploadMs = 0;                             // see uploadMs()
-    bool m_meetsSurface = false, m_metBefore = false;  // see metSurface(); in this step and the one before
-    bool m_wasSolved = false;
+    bool m_heldTogether = false;  // any body, since the last detection
+    double m_uploadMs = 0;        // see uploadMs()
+    bool m_neededHost = false;    // see neededHost()
     BringHome m_bringHome;
     DeformedPairs m_deformed;
     PairStarts m_starts;

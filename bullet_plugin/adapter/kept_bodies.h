@@ -1,9 +1,9 @@
 // Bodies whose nodes stay on the device between steps (Plugin::keepOnDevice()).
 //
 // A kept body is away while the device's nodes are newer than Bullet's. Its step begins without nodes: the device
-// predicts it, and bounds come from boxes that the last step left. Where a step needs the nodes, the body comes home: it
-// gets the nodes of the last step's end, and the step goes on as for any body, with the same bits. At the step's end its
-// nodes are stored again. Cost of a step away: some comparisons, and one for each pinned node.
+// predicts it, and bounds come from boxes that the last step left. Where a step needs the nodes, the body comes home:
+// it gets the nodes of the last step's end, and the step goes on as for any body, with the same bits. At the step's end
+// its nodes are stored again. Cost of a step away: some comparisons, and one for each pinned node.
 //
 // Input: bodies that are alive; others are only compared. Errors: a device that fails leaves bodies with the nodes that
 // Bullet has.

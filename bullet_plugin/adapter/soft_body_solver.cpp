@@ -111,7 +111,10 @@ struct SoftBodySolver::Work
     void predictOne(btSoftBody& body, ThreadTeam* threads, const Predict& predict);
     void beginAway(btSoftBody& body);
     void bringHome(btSoftBody& body);
+    void bringHomeInStep(btSoftBody& body);
     void bringFreeHome(const btAlignedObjectArray<btSoftBody*>& bodies);
+    void bringUnsolvedHome(const btAlignedObjectArray<btSoftBody*>& bodies);
+    ClothContacts& clothOf(const btSoftBody& body);
     void bringAllHome(const btAlignedObjectArray<btSoftBody*>& bodies);
     std::size_t endKept(const btAlignedObjectArray<btSoftBody*>& bodies);
     std::size_t substepNodes(const btSoftBody& body) const;
@@ -153,7 +156,7 @@ struct SoftBodySolver::Work
     bool m_listed = false;                                           // m_predicted is whole
     bool m_detected = false;                                         // the paths of all bodies with a pair are recorded
     bool m_begun = false;                                            // beginSubsteps() was called in this step
-    bool m_wasSolved = false;                                        // the device has solved this step
+    std::size_t m_onDevice = 0;                                      // cloths solved behind the detection
     SolveStage* m_stage = nullptr;                                   // solves this step's cloths; null: the host does
     std::size_t m_asleep = 0;                                        // cloths that are not among them
     StepParts m_parts;                                               // parts of the running step, without its waits
@@ -398,10 +401,13 @@ void SoftBodySolver::detect()
     const bool submitted = follows && work.submitBehind(m_softBodySet, m_state->m_found.source());
     work.m_parts.m_readMs += watch.lapMs();
     const auto takeSolved = [&work](bool hasWaited)
-    { return work.m_solver->finishBehind(work.m_touched, work.m_free, *work.m_stage, hasWaited); };
-    step.finish(submitted ? [&takeSolved] { return takeSolved(true); } : std::function<bool()>());
-    work.m_wasSolved = step.wasSolved() || (submitted && !step.hasPairs() && takeSolved(false));
-    if (!work.m_wasSolved) work.bringAllHome(m_softBodySet);
+    { work.m_onDevice = work.m_solver->finishBehind(*work.m_stage, hasWaited); };
+    step.finish(submitted ? [&takeSolved] { takeSolved(true); } : CollisionStep::TakeSolved());
+    if (submitted && !step.hasPairs()) takeSolved(false);
+    if (submitted)
+        work.bringUnsolvedHome(m_softBodySet);
+    else
+        work.bringAllHome(m_softBodySet);
     for (int i = 0; i < m_softBodySet.size(); ++i)
         step.reportInvalid(*m_softBodySet[i]);
     work.m_detected = true;
@@ -437,6 +443,7 @@ void SoftBodySolver::Work::readPaths(const btAlignedObjectArray<btSoftBody*>& bo
     {
         const btSoftBody& body = *bodies[int(i)];
         BodyContacts* const contacts = contactsOf(body);
+        if (clothOf(body).m_isSolved) return;
         substepsOf(body)->readPaths(body, contacts ? &contacts->m_contacts : nullptr, threads);
     };
     forBodies(
@@ -444,7 +451,14 @@ void SoftBodySolver::Work::readPaths(const btAlignedObjectArray<btSoftBody*>& bo
         [&](std::size_t i) { return substepNodes(*bodies[int(i)]); }, read);
 }
 
-// Hands the bodies whose links the core solves to the solver, with their paths.
+// Returns the cloth of a body whose links the core solves.
+ClothContacts& SoftBodySolver::Work::clothOf(const btSoftBody& body)
+{
+    BodyContacts* const contacts = contactsOf(body);
+    return contacts ? contacts->m_contacts : substepsOf(body)->alone();
+}
+
+// Hands the bodies whose links the core solves to the solver, with their paths, unless they are solved.
 void SoftBodySolver::Work::takeSubsteps(const btAlignedObjectArray<btSoftBody*>& bodies)
 {
     m_touched.clear();
@@ -458,12 +472,12 @@ void SoftBodySolver::Work::takeSubsteps(const btAlignedObjectArray<btSoftBody*>&
         btSoftBody& body = *bodies[i];
         if (substepNodes(body) == 0) continue;
         const KeptStep* const kept = m_state.m_kept.stepOf(body);
-        BodyContacts* const contacts = contactsOf(body);
         SubstepBody& substeps = *substepsOf(body);
-        ClothContacts& cloth = contacts ? contacts->m_contacts : substeps.alone();
-        substeps.addRows(body, cloth.m_nodes, m_rigidBodies);
+        ClothContacts& cloth = clothOf(body);
         if (!kept) m_ends.emplace_back(&body, &cloth.m_nodes);
-        const bool isFree = !contacts && !substeps.rigidRows();
+        if (cloth.m_isSolved) continue;
+        substeps.addRows(body, cloth.m_nodes, m_rigidBodies);
+        const bool isFree = !contactsOf(body) && !substeps.rigidRows();
         (isFree ? m_free : m_touched).push_back({&cloth, &substeps.substeps(), nullptr, substeps.rigidRows(), kept});
     }
 }
@@ -486,7 +500,7 @@ void SoftBodySolver::Work::takeForeign(const btAlignedObjectArray<btSoftBody*>& 
 // solve all bodies with a pair. A path that meets a surface has to end there before.
 bool SoftBodySolver::Work::mayFollow(const btAlignedObjectArray<btSoftBody*>& bodies) const
 {
-    if (!m_stage || m_step->metSurface() || !(m_step->hasPairs() || m_state.m_kept.anyBegun())) return false;
+    if (!m_stage || m_step->neededHost() || !(m_step->hasPairs() || m_state.m_kept.anyBegun())) return false;
     const auto fits = [this](const BodyContacts& body)
     { return substepNodes(*body.m_body) > 0 && !body.m_contacts.m_isFiltered && !body.m_hasDeformedPair; };
     const auto isRigid = [](const btSoftBody* body)
@@ -506,14 +520,23 @@ void SoftBodySolver::Work::bringFreeHome(const btAlignedObjectArray<btSoftBody*>
 void SoftBodySolver::Work::bringAllHome(const btAlignedObjectArray<btSoftBody*>& bodies)
 {
     for (int i = 0; i < bodies.size(); ++i)
-    {
-        if (!m_state.m_kept.stepOf(*bodies[i])) continue;
-        BodyContacts* const contacts = contactsOf(*bodies[i]);
-        if (contacts)
-            m_step->bringHome(*contacts);
-        else
-            bringHome(*bodies[i]);
-    }
+        if (m_state.m_kept.stepOf(*bodies[i])) bringHomeInStep(*bodies[i]);
+}
+
+// Brings a body home after the step's begin(), which knows whether it is away.
+void SoftBodySolver::Work::bringHomeInStep(btSoftBody& body)
+{
+    if (BodyContacts* const contacts = contactsOf(body))
+        m_step->bringHome(*contacts);
+    else
+        bringHome(body);
+}
+
+// Brings bodies home that the device has not solved.
+void SoftBodySolver::Work::bringUnsolvedHome(const btAlignedObjectArray<btSoftBody*>& bodies)
+{
+    for (int i = 0; i < bodies.size(); ++i)
+        if (m_state.m_kept.stepOf(*bodies[i]) && !clothOf(*bodies[i]).m_isSolved) bringHomeInStep(*bodies[i]);
 }
 
 // Stores the nodes of kept bodies that are at home. Returns the number of bodies whose step began and ended away.
@@ -553,18 +576,13 @@ void SoftBodySolver::solveBodies(StepParts& parts)
     Work& work = *m_work;
     work.m_bulletLinks.clear();
     work.m_solved.assign(static_cast<std::size_t>(m_softBodySet.size()), 0);
-    const bool wasSolved = work.m_wasSolved;
     Stopwatch watch;
-    if (!wasSolved)
-    {
-        work.takeSubsteps(m_softBodySet);
-        work.takeForeign(m_softBodySet);
-    }
+    work.takeSubsteps(m_softBodySet);
+    work.takeForeign(m_softBodySet);
     parts.m_readMs += watch.lapMs();
     if (work.solveByBullet(m_softBodySet)) parts.m_bulletMs += watch.lapMs();
     m_state->m_statistics.m_clothsOnDevice =
-        wasSolved ? work.m_touched.size() + work.m_free.size()
-                  : work.m_solver->solve(work.m_touched, work.m_free, m_state->m_found.source(), work.m_stage);
+        work.m_onDevice + work.m_solver->solve(work.m_touched, work.m_free, m_state->m_found.source(), work.m_stage);
     double linksMs = 0;
     for (const std::unique_ptr<BulletLinks>& links : work.m_bulletLinks)
         linksMs += links->ms();
@@ -607,7 +625,8 @@ void SoftBodySolver::solveStep()
     StepParts& parts = m_work->m_parts;
     const std::size_t waits = m_state->ready() ? m_state->pipeline().deviceWaits() : 0;
     Stopwatch watch;
-    m_work->m_begun = m_work->m_wasSolved = false;
+    m_work->m_begun = false;
+    m_work->m_onDevice = 0;
     m_work->m_stage = nullptr;
     leaveToBullet();
     parts.m_readMs += watch.lapMs();

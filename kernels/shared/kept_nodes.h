@@ -18,17 +18,17 @@ typedef struct KeptNode
 // A kept cloth in a step, and what its prediction needs. Nodes are in the caller's order.
 typedef struct KeptCloth
 {
-    DRAPE_UINT m_count;     // nodes
-    DRAPE_UINT m_before;    // place of the first node at the step's start
-    DRAPE_UINT m_after;     // place at its end
-    DRAPE_UINT m_start;     // floats, of the first node's start among the detection's nodes; DRAPE_NOT_DETECTED: none
-    DRAPE_UINT m_end;       // floats, of its end
-    DRAPE_UINT m_solved;    // place among the solver's nodes
-    Vec3 m_gravity;         // m/s, what gravity adds to a velocity in the step
-    float m_time;           // s, the step's time
-    float m_perSecond;      // 1/s, its inverse as Bullet has it
-    float m_shift;          // s², see SubstepBody::afterPrediction()
-    float m_mostOffPath;    // m, from its path's end, beyond which a node may have passed a surface
+    DRAPE_UINT m_count;   // nodes
+    DRAPE_UINT m_before;  // place of the first node at the step's start
+    DRAPE_UINT m_after;   // place at its end
+    DRAPE_UINT m_start;   // floats, of the first node's start among the detection's nodes; DRAPE_NOT_DETECTED: none
+    DRAPE_UINT m_end;     // floats, of its end
+    DRAPE_UINT m_solved;  // place among the solver's nodes
+    Vec3 m_gravity;       // m/s, what gravity adds to a velocity in the step
+    float m_time;         // s, the step's time
+    float m_perSecond;    // 1/s, its inverse as Bullet has it
+    float m_shift;        // s², see SubstepBody::afterPrediction()
+    float m_mostOffPath;  // m, from its path's end, beyond which a node may have passed a surface
 } KeptCloth;
 #define DRAPE_NOT_DETECTED 0xffffffffu
 

@@ -47,6 +47,7 @@ struct ClothContacts
     float m_perSecond = 0;         // 1/s, steps per second
     float m_kept = 1;              // share of a velocity that damping leaves in a step
     bool m_mayHavePassed = false;  // a contact is left so near that a surface may have been passed
+    bool m_isSolved = false;       // the step is solved
 
     // Begins another step; memory is kept.
     void start(MeshId mesh, const ClothParts& parts, const FeatureOrder* order)
@@ -60,7 +61,7 @@ struct ClothContacts
         m_isFiltered = false;
         m_obstacles.clear();
         m_limit.clear();
-        m_mayHavePassed = false;
+        m_mayHavePassed = m_isSolved = false;
     }
     SolverContact resolve(const ContactSource& source, const Contact& contact) const
     {

@@ -127,23 +127,20 @@ void KeptNodes::keep(const SolveLayout& layout, Buffer<SolveTopologyWord>& topol
     m_boundsRead.resize(m_solvedSent.size());
     m_bounds.assign(*m_device, m_emptyBounds);
     const std::size_t items = width(m_solvedSent);
-    m_keep.launch(*m_device, items, listGroup(*m_device), m_launch, layout, topology, m_solved, m_nodes, work, m_bounds);
+    m_keep.launch(*m_device, items, listGroup(*m_device), m_launch, layout, topology, m_solved, m_nodes, work,
+                  m_bounds);
     m_bounds.read(*m_device, m_boundsRead.data(), m_boundsRead.size());
 }
 
-bool KeptNodes::isGood() const
+bool KeptNodes::isGood(std::size_t place) const
 {
-    return std::none_of(m_boundsRead.begin(), m_boundsRead.end(),
-                        [](const KeptBounds& bounds) { return bounds.m_isInvalid != 0 || bounds.m_isOffPath != 0; });
+    return m_boundsRead[place].m_isInvalid == 0 && m_boundsRead[place].m_isOffPath == 0;
 }
 
-void KeptNodes::accept(const std::vector<KeptStep>& steps)
+void KeptNodes::accept(KeptId id, std::size_t place)
 {
-    for (std::size_t i = 0; i < steps.size(); ++i)
-    {
-        Slot& slot = m_slots[steps[i].m_id];
-        slot.m_turn = 1 - slot.m_turn;
-        slot.m_boxes = boxesOf(m_boundsRead[i]);
-    }
+    Slot& slot = m_slots[id];
+    slot.m_turn = 1 - slot.m_turn;
+    slot.m_boxes = boxesOf(m_boundsRead[place]);
 }
 }  // namespace drape

@@ -37,15 +37,15 @@ public:
     // Returns the record of a cloth in a step; places in the detection and the solver are left out.
     KeptCloth clothOf(const KeptStep& step) const;
     // Writes the paths for the solver.
-    void takePaths(const std::vector<KeptCloth>& cloths, const SolveLayout& layout,
-                   Buffer<SolveTopologyWord>& topology, Buffer<SolveWorkWord>& work);
+    void takePaths(const std::vector<KeptCloth>& cloths, const SolveLayout& layout, Buffer<SolveTopologyWord>& topology,
+                   Buffer<SolveWorkWord>& work);
     // Takes the solver's result and reads the bounds. The arrays stay the caller's until a wait for the device.
     void keep(const SolveLayout& layout, Buffer<SolveTopologyWord>& topology, Buffer<SolveWorkWord>& work);
-    // Returns whether the last result of keep() can be accepted, after the wait: no node left its path too far, and all
-    // numbers are finite.
-    bool isGood() const;
-    // Accepts the result for all cloths of the step.
-    void accept(const std::vector<KeptStep>& steps);
+    // Returns whether the last result of keep() can be accepted for a cloth, after the wait: no node left its path too
+    // far, and all numbers are finite. place: in the list of takePaths().
+    bool isGood(std::size_t place) const;
+    // Accepts that result.
+    void accept(KeptId id, std::size_t place);
     // Returns the boxes after the last accepted step of the cloth.
     const KeptBoxes& boxes(KeptId id) const { return m_slots[id].m_boxes; }
 
@@ -71,7 +71,8 @@ private:
     BoundKernel<kernels::keepNodes> m_keep;
     std::vector<Slot> m_slots;
     Buffer<KeptNode> m_nodes{"kept nodes"};
-    Buffer<KeptCloth> m_detected{"kept nodes"}, m_solved{"kept nodes"};  // records of the step, as each stage reads them
+    Buffer<KeptCloth> m_detected{"kept nodes"},
+        m_solved{"kept nodes"};  // records of the step, as each stage reads them
     Buffer<KeptBounds> m_bounds{"kept nodes"};
     std::vector<KeptCloth> m_detectedSent, m_solvedSent;
     std::vector<KeptBounds> m_emptyBounds, m_boundsRead;

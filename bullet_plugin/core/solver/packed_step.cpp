@@ -174,7 +174,6 @@ void PackedStep::layOut(const ContactSource& source, SolveStage& stage)
 void PackedStep::packKept(const SolveStage& stage)
 {
     m_step.m_kept.clear();
-    m_keptSteps.clear();
     for (std::size_t i = 0; i < m_cloths.size(); ++i)
     {
         if (!m_cloths[i].m_kept) continue;
@@ -182,7 +181,6 @@ void PackedStep::packKept(const SolveStage& stage)
         kept.m_solved = m_clothRecords[i].m_nodes.m_first;
         kept.m_mostOffPath = m_cloths[i].m_contacts->m_limit.freeDistance();
         m_step.m_kept.push_back(kept);
-        m_keptSteps.push_back(*m_cloths[i].m_kept);
     }
 }
 
@@ -231,49 +229,39 @@ void PackedStep::pack(const std::vector<SolverCloth>& cloths, const ContactSourc
     describeLaunches();
 }
 
-const SolveResult* PackedStep::resultsIn(const SolveWorkWord* words) const
-{
-    return reinterpret_cast<const SolveResult*>(words + (m_step.m_layout.m_results - m_step.m_clearedWords));
-}
-
-bool PackedStep::mustRepeat(const SolveWorkWord* words) const
-{
-    const SolveResult* const results = resultsIn(words);
-    for (std::size_t i = 0; i < m_cloths.size(); ++i)
-        if (results[i].m_meets || results[i].m_refused || (m_cloths[i].m_kept && results[i].m_mayHavePassed))
-            return true;
-    return false;
-}
-
-void PackedStep::acceptKept(SolveStage& stage) const
-{
-    if (!m_keptSteps.empty()) stage.kept().accept(m_keptSteps);
-}
-
-void PackedStep::unpack(const SolveWorkWord* words, std::vector<SolverCloth>& refused) const
+void PackedStep::unpackNodes(std::size_t cloth, const SolveWorkWord* words) const
 {
     const SolveLayout& layout = m_step.m_layout;
+    const auto* const ends = reinterpret_cast<const SolverNode*>(words + (layout.m_nodes - m_step.m_clearedWords));
+    const auto* const states = reinterpret_cast<const NodeState*>(words + (layout.m_states - m_step.m_clearedWords));
     const std::vector<std::uint32_t>& places = m_topology.places();
-    const auto at = [&](std::uint32_t place) { return words + (place - m_step.m_clearedWords); };
-    const SolveResult* const results = resultsIn(words);
-    const auto* const ends = reinterpret_cast<const SolverNode*>(at(layout.m_nodes));
-    const auto* const states = reinterpret_cast<const NodeState*>(at(layout.m_states));
+    SolverNodes& nodes = m_cloths[cloth].m_contacts->m_nodes;
+    const std::size_t first = m_clothRecords[cloth].m_nodes.m_first;
+    for (std::size_t place = first; place < first + nodes.count(); ++place)
+    {
+        nodes.nodes()[places[place] - first] = ends[place];
+        nodes.states()[places[place] - first] = states[place];
+    }
+}
+
+void PackedStep::unpack(const SolveWorkWord* words, SolveStage& stage, bool behind) const
+{
+    const SolveLayout& layout = m_step.m_layout;
+    const auto* const results =
+        reinterpret_cast<const SolveResult*>(words + (layout.m_results - m_step.m_clearedWords));
+    std::size_t kept = 0;  // place among kept cloths
     for (std::size_t i = 0; i < m_cloths.size(); ++i)
     {
-        SolverNodes& nodes = m_cloths[i].m_contacts->m_nodes;
-        const std::size_t first = m_clothRecords[i].m_nodes.m_first;
-        if (m_cloths[i].m_kept) continue;
-        if (results[i].m_refused)
-        {
-            refused.push_back(m_cloths[i]);
-            continue;
-        }
-        for (std::size_t place = first; place < first + nodes.count(); ++place)
-        {
-            nodes.nodes()[places[place] - first] = ends[place];
-            nodes.states()[places[place] - first] = states[place];
-        }
+        const KeptStep* const step = m_cloths[i].m_kept;
+        const std::size_t place = step ? kept++ : 0;
+        if (results[i].m_refused || (behind && results[i].m_meets)) continue;
+        if (step && (results[i].m_mayHavePassed || !stage.kept().isGood(place))) continue;
+        if (step)
+            stage.kept().accept(step->m_id, place);
+        else
+            unpackNodes(i, words);
         m_cloths[i].m_contacts->m_mayHavePassed = results[i].m_mayHavePassed != 0;
+        m_cloths[i].m_contacts->m_isSolved = true;
     }
 }
 }  // namespace drape

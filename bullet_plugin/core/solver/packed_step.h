@@ -22,14 +22,10 @@ public:
     // Packs cloths that fit. They must stay in place until unpack().
     void pack(const std::vector<SolverCloth>& cloths, const ContactSource& source, SolveStage& stage);
     const SolveStep& step() const { return m_step; }
-    // Returns whether the cloths must be solved again: a path meets a surface, the device could not solve one, or one
-    // whose nodes stay there may have passed a surface.
-    bool mustRepeat(const SolveWorkWord* words) const;
-    bool anyKept() const { return !m_keptSteps.empty(); }
-    // Accepts the step for cloths whose nodes stay on the device.
-    void acceptKept(SolveStage& stage) const;
-    // Gives the cloths' nodes the device's result. Adds the cloths that it could not solve to `refused`.
-    void unpack(const SolveWorkWord* words, std::vector<SolverCloth>& refused) const;
+    // Accepts the device's result and marks the cloths as solved, with their nodes. behind: the step was solved behind
+    // a detection. Cloths that the device could not solve stay as they were. So do, behind a detection, cloths with a
+    // path that meets a surface, and those that may have passed one if their nodes stay on the device.
+    void unpack(const SolveWorkWord* words, SolveStage& stage, bool behind) const;
 
 private:
     void packCloth(std::size_t index, const ContactSource& source, const SolveStage& stage);
@@ -39,7 +35,7 @@ private:
     void packRegions(const ClothContacts& contacts, const ContactSource& source, SolveCloth& cloth);
     void layOut(const ContactSource& source, SolveStage& stage);
     void describeLaunches();
-    const SolveResult* resultsIn(const SolveWorkWord* words) const;
+    void unpackNodes(std::size_t cloth, const SolveWorkWord* words) const;
 
     std::vector<SolverCloth> m_cloths;
     PackedTopology m_topology;
@@ -49,6 +45,5 @@ private:
     std::vector<SolveSurface> m_surfaces;
     std::vector<SolveRegion> m_regions;
     std::vector<MeshOffsets> m_obstacles;
-    std::vector<KeptStep> m_keptSteps;
 };
 }  // namespace drape

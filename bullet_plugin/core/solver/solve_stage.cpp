@@ -243,10 +243,9 @@ bool SolveStage::anyOpen() const
 {
     const SolveWorkWord* const words = m_resultRead->data() + (m_step->m_layout.m_results - m_step->m_clearedWords);
     const auto* const results = reinterpret_cast<const SolveResult*>(words);
-    const bool anyMeets = isOnDevice() && std::any_of(results, results + m_step->m_clothCount,
-                                                      [](const SolveResult& result) { return result.m_meets != 0; });
-    return !anyMeets && std::any_of(results, results + m_step->m_clothCount,
-                                    [](const SolveResult& result) { return result.m_isOpen != 0; });
+    const bool behind = isOnDevice();
+    return std::any_of(results, results + m_step->m_clothCount,
+                       [behind](const SolveResult& result) { return result.m_isOpen && !(behind && result.m_meets); });
 }
 
 const SolveWorkWord* SolveStage::finish(bool hasWaited)

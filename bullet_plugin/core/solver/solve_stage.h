@@ -62,7 +62,7 @@ public:
     // Returns after enqueueing.
     void submit(const SolveStep& step);
     // Waits, unless the caller has. Returns the words that were read back, null if the device failed. They stay until
-    // the next submit(). A step that SolveResult::m_meets says must be solved again is not finished.
+    // the next submit(). Behind a detection, cloths with a path that meets a surface are not finished.
     const SolveWorkWord* finish(bool hasWaited = false);
     // Releases memory that only earlier, larger steps needed. Waits.
     void giveBackRoom();

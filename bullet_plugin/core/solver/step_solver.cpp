@@ -303,38 +303,37 @@ void StepSolver::solveOnHost(const std::vector<SolverCloth>& cloths, const std::
         m_own.push_back({&cloth.m_contacts->m_nodes, cloth.m_substeps});
     forEach(m_own,
             [](const LinkedNodes& cloth, ThreadTeam* threads) { cloth.m_substeps->run(*cloth.m_nodes, threads); });
-    if (cloths.empty()) return;
-    m_cloths = cloths;
-    begin(source);
-    iterate();
-    settle();
-    close();
+    if (!cloths.empty())
+    {
+        m_cloths = cloths;
+        begin(source);
+        iterate();
+        settle();
+        close();
+    }
+    for (const std::vector<SolverCloth>* all : {&cloths, &free})
+    {
+        for (const SolverCloth& cloth : *all)
+            cloth.m_contacts->m_isSolved = true;
+        keepMomenta(*all);
+    }
 }
 
-// Keeps the momentum of cloths that no obstacle touches.
-void StepSolver::keepMomenta(const std::vector<SolverCloth>& cloths, const std::vector<SolverCloth>& free)
+// Keeps the momentum of cloths that are solved and that no obstacle touches.
+void StepSolver::keepMomenta(const std::vector<SolverCloth>& cloths)
 {
     m_keeping.clear();
     std::size_t nodes = 0;
-    for (const std::vector<SolverCloth>* all : {&cloths, &free})
-        for (const SolverCloth& cloth : *all)
-        {
-            if (cloth.m_kept || !keepsMomentum(cloth)) continue;
-            m_keeping.push_back(&cloth);
-            nodes += cloth.m_contacts->m_nodes.count();
-        }
+    for (const SolverCloth& cloth : cloths)
+    {
+        if (cloth.m_kept || !cloth.m_contacts->m_isSolved || !keepsMomentum(cloth)) continue;
+        m_keeping.push_back(&cloth);
+        nodes += cloth.m_contacts->m_nodes.count();
+    }
     if (nodes >= kLeastKeepingShared)
         return m_threads.run(m_keeping.size(), [&](std::size_t i) { keepMomentum(*m_keeping[i]); });
     for (const SolverCloth* cloth : m_keeping)
         keepMomentum(*cloth);
-}
-
-std::size_t StepSolver::solve(const std::vector<SolverCloth>& cloths, const std::vector<SolverCloth>& free,
-                              const ContactSource& source, SolveStage* stage)
-{
-    const std::size_t onDevice = solveAll(cloths, free, source, stage);
-    keepMomenta(cloths, free);
-    return onDevice;
 }
 
 void StepSolver::divide(const std::vector<SolverCloth>& cloths, const std::vector<SolverCloth>& free,
@@ -349,6 +348,15 @@ void StepSolver::divide(const std::vector<SolverCloth>& cloths, const std::vecto
         (stage && PackedStep::fits(cloth) ? m_onDevice : m_freeOnHost).push_back(cloth);
 }
 
+// Accepts results of the device. Returns the number of cloths that it has solved.
+std::size_t StepSolver::takeResults(const SolveWorkWord* words, SolveStage& stage, bool behind)
+{
+    if (words) m_packed.unpack(words, stage, behind);
+    keepMomenta(m_onDevice);
+    return std::size_t(std::count_if(m_onDevice.begin(), m_onDevice.end(),
+                                     [](const SolverCloth& cloth) { return cloth.m_contacts->m_isSolved; }));
+}
+
 bool StepSolver::submitBehind(const std::vector<SolverCloth>& cloths, const std::vector<SolverCloth>& free,
                               const ContactSource& source, SolveStage& stage)
 {
@@ -359,38 +367,28 @@ bool StepSolver::submitBehind(const std::vector<SolverCloth>& cloths, const std:
     return true;
 }
 
-bool StepSolver::finishBehind(const std::vector<SolverCloth>& cloths, const std::vector<SolverCloth>& free,
-                              SolveStage& stage, bool hasWaited)
+std::size_t StepSolver::finishBehind(SolveStage& stage, bool hasWaited)
 {
-    const SolveWorkWord* const result = stage.finish(hasWaited);
-    if (!result || m_packed.mustRepeat(result) || (m_packed.anyKept() && !stage.kept().isGood())) return false;
-    m_packed.acceptKept(stage);
-    m_packed.unpack(result, m_refused);
-    keepMomenta(cloths, free);
-    return true;
+    return takeResults(stage.finish(hasWaited), stage, true);
 }
 
-std::size_t StepSolver::solveAll(const std::vector<SolverCloth>& cloths, const std::vector<SolverCloth>& free,
-                                 const ContactSource& source, SolveStage* stage)
+std::size_t StepSolver::solve(const std::vector<SolverCloth>& cloths, const std::vector<SolverCloth>& free,
+                              const ContactSource& source, SolveStage* stage)
 {
     divide(cloths, free, stage);
-    if (m_onDevice.empty())
+    if (!m_onDevice.empty())
     {
-        solveOnHost(m_onHost, m_freeOnHost, source);
-        return 0;
+        m_packed.pack(m_onDevice, source, *stage);
+        stage->submit(m_packed.step());
     }
-    m_packed.pack(m_onDevice, source, *stage);
-    stage->submit(m_packed.step());
     solveOnHost(m_onHost, m_freeOnHost, source);
-    if (const SolveWorkWord* const result = stage->finish())
-    {
-        m_refused.clear();
-        m_packed.unpack(result, m_refused);
-        if (!m_refused.empty()) solveOnHost(m_refused, {}, source);
-        return m_onDevice.size() - m_refused.size();
-    }
-    solveOnHost(m_onDevice, {}, source);
-    return 0;
+    if (m_onDevice.empty()) return 0;
+    const std::size_t solved = takeResults(stage->finish(), *stage, false);
+    m_refused.clear();
+    std::copy_if(m_onDevice.begin(), m_onDevice.end(), std::back_inserter(m_refused),
+                 [](const SolverCloth& cloth) { return !cloth.m_contacts->m_isSolved; });
+    solveOnHost(m_refused, {}, source);
+    return solved;
 }
 
 void StepSolver::close(const std::vector<SolverCloth>& cloths, const ContactSource& source)

@@ -58,20 +58,21 @@ class StepSolver
 public:
     explicit StepSolver(ThreadTeam& threads) : m_team(threads), m_threads(threads) {}
 
-    // Cloths with ForeignLinks are written back; nodes of others stay where the solver leaves them. free: cloths
-    // without contacts, limits or rigid rows. stage: solves the cloths that fit (PackedStep); null if there is none.
-    // If the device fails, the host solves them all. Returns the number of cloths that the device solved.
+    // Solves the cloths and marks them as solved. Cloths with ForeignLinks are written back; nodes of others stay where
+    // the solver leaves them. free: cloths without contacts, limits or rigid rows. stage: solves the cloths that fit
+    // (PackedStep); null if there is none. If the device fails, the host solves them all. Returns the number of cloths
+    // that the device solved.
     std::size_t solve(const std::vector<SolverCloth>& cloths, const std::vector<SolverCloth>& free,
                       const ContactSource& source, SolveStage* stage = nullptr);
     // Enqueues the whole step of the cloths, behind a detection whose contacts stay on the device if there is one.
     // Returns false, with nothing enqueued, if the device cannot solve all of them.
     bool submitBehind(const std::vector<SolverCloth>& cloths, const std::vector<SolverCloth>& free,
                       const ContactSource& source, SolveStage& stage);
-    // Takes over the results. hasWaited: the host has waited for that detection, which must have run once. Returns
-    // false, with the nodes as they were, if solve() must solve the step: a path meets a surface, a cloth whose nodes
-    // stay on the device may have passed one, or the device failed.
-    bool finishBehind(const std::vector<SolverCloth>& cloths, const std::vector<SolverCloth>& free, SolveStage& stage,
-                      bool hasWaited);
+    // Takes over the results and marks the cloths as solved. hasWaited: the host has waited for that detection, which
+    // must have run once. Other cloths stay as they were, for solve(): those with a path that meets a surface, those
+    // that may have passed one if their nodes stay on the device, and all if the device failed. Returns the number of
+    // cloths solved.
+    std::size_t finishBehind(SolveStage& stage, bool hasWaited);
     // Runs the closing sweeps alone, for cloths whose nodes are at the ends of the paths along which their contacts
     // were found.
     void close(const std::vector<SolverCloth>& cloths, const ContactSource& source);
@@ -86,11 +87,10 @@ private:
 
     using Cloths = SweepTeam::Cloths;
 
-    std::size_t solveAll(const std::vector<SolverCloth>& cloths, const std::vector<SolverCloth>& free,
-                         const ContactSource& source, SolveStage* stage);
     // Divides the cloths among the device and the host.
     void divide(const std::vector<SolverCloth>& cloths, const std::vector<SolverCloth>& free, const SolveStage* stage);
-    void keepMomenta(const std::vector<SolverCloth>& cloths, const std::vector<SolverCloth>& free);
+    void keepMomenta(const std::vector<SolverCloth>& cloths);
+    std::size_t takeResults(const SolveWorkWord* words, SolveStage& stage, bool behind);
     void solveOnHost(const std::vector<SolverCloth>& cloths, const std::vector<SolverCloth>& free,
                      const ContactSource& source);
     void begin(const ContactSource& source);
