@@ -151,6 +151,13 @@ void writeNormals(const btSoftBody& body, const KeptNode* nodes, float* normals)
     }
 }
 
+bool anyPinned(const btSoftBody& body)
+{
+    for (int i = 0; i < body.m_nodes.size(); ++i)
+        if (!(body.m_nodes[i].m_im > 0)) return true;
+    return false;
+}
+
 void write(const Vec3& v, float* to)
 {
     to[0] = v.x;
@@ -327,11 +334,19 @@ const KeptBoxes& KeptBodies::boxesOf(const btSoftBody& body) const
     return kept.m_isStored ? kept.m_stored : stage()->kept().boxes(kept.m_id);
 }
 
+void KeptBodies::callHome(const btSoftBody& body)
+{
+    beginFetch(body);
+    Kept& kept = *find(body);
+    kept.m_isCalled = kept.m_isReading;
+}
+
 // Pinned nodes stay where Bullet has them if the app moved them.
 void KeptBodies::comeHome(btSoftBody& body)
 {
     Kept& kept = *find(body);
-    kept.m_isReading = false;
+    if (!kept.m_isCalled) kept.m_isReading = false;  // a transfer of an earlier step's nodes
+    kept.m_isCalled = false;
     const KeptNode* const nodes = read(kept);
     kept.m_isAway = kept.m_isBegun = false;
     if (!nodes) return;
@@ -386,9 +401,10 @@ void KeptBodies::endStep(btSoftBody& body, bool hasPair)
         return;
     }
     kept->m_hadPair = hasPair;
+    const bool isSameSize = solver->kept().count(kept->m_id) == static_cast<std::size_t>(body.m_nodes.size());
     if (kept->m_isAway)
         kept->m_isStored = false;  // the boxes are the device's now
-    else if (solver->kept().count(kept->m_id) == static_cast<std::size_t>(body.m_nodes.size()))
+    else if (isSameSize && (hasPair || anyPinned(body)))  // a free body would come home in the next step
         store(body, *kept);
     kept->m_isBegun = false;
 }

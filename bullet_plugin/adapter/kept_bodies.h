@@ -40,6 +40,7 @@ public:
     // Gives all bodies their nodes as far as possible, and keeps none. Throws nothing.
     void abandon() noexcept;
 
+    bool any() const { return !m_bodies.empty(); }
     bool isAway(const btSoftBody& body) const;
     // Returns whether any body's step has begun away.
     bool anyBegun() const;
@@ -51,7 +52,9 @@ public:
     const KeptStep* stepOf(const btSoftBody& body) const;
     // Returns the boxes of that step.
     const KeptBoxes& boxesOf(const btSoftBody& body) const;
-    // Gives the body the nodes of the last step's end. Waits.
+    // Starts the transfer for comeHome(), so that several bodies share a wait.
+    void callHome(const btSoftBody& body);
+    // Gives the body the nodes of the last step's end.
     void comeHome(btSoftBody& body);
     // Returns whether a solver's step had contacts for the body when it was last away or stored.
     bool hadPair(const btSoftBody& body) const;
@@ -71,7 +74,8 @@ private:
         bool m_isStored = false;
         std::vector<int> m_pins;
         std::vector<btVector3> m_pinnedAt;
-        bool m_isReading = false;
+        bool m_isReading = false;  // a transfer was begun
+        bool m_isCalled = false;   // by callHome()
         std::size_t m_waitsBefore = 0;
     };
 

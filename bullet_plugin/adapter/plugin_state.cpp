@@ -363,6 +363,12 @@ void PluginState::startAnew(const btCollisionObject* object)
         if (entry.first.m_object == object) entry.second.startAnew();
 }
 
+const ClothMirror* PluginState::mirrorOf(const btSoftBody& body) const
+{
+    const auto found = m_cloths.find(&body);
+    return found == m_cloths.end() ? nullptr : &found->second;
+}
+
 void PluginState::bringHome(btSoftBody& body)
 {
     m_kept.comeHome(body);

@@ -119,6 +119,8 @@ public:
     // Returns the mirrors of a noted pair, and makes missing ones. Counts the step for dropOldMirrors().
     ClothMirror& clothMirror(const PairNote& note);
     ObstacleMirror& obstacleMirror(const PairNote& note);
+    // Returns the body's mirror; null if there is none.
+    const ClothMirror* mirrorOf(const btSoftBody& body) const;
     void dropOldMirrors();
 
     StepStatistics m_statistics;

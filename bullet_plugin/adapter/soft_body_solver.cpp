@@ -109,7 +109,9 @@ struct SoftBodySolver::Work
     SubstepBody* substepsAt(const btSoftBody& body) const;
     template <class Predict>
     void predictOne(btSoftBody& body, ThreadTeam* threads, const Predict& predict);
-    void beginAway(btSoftBody& body);
+    void beginAway(const btAlignedObjectArray<btSoftBody*>& bodies);
+    template <class Needed>
+    void bringHomeWhere(const btAlignedObjectArray<btSoftBody*>& bodies, const Needed& isNeeded);
     void bringHome(btSoftBody& body);
     void bringHomeInStep(btSoftBody& body);
     void bringFreeHome(const btAlignedObjectArray<btSoftBody*>& bodies);
@@ -210,12 +212,22 @@ void SoftBodySolver::Work::predictOne(btSoftBody& body, ThreadTeam* threads, con
     if (substeps) substeps->afterPrediction(body, threads);
 }
 
-// Begins the step of a body whose nodes are on the device, or gives it the nodes of the last step's end.
-void SoftBodySolver::Work::beginAway(btSoftBody& body)
+// Begins the steps of bodies whose nodes are on the device, or gives them the nodes of the last step's end.
+void SoftBodySolver::Work::beginAway(const btAlignedObjectArray<btSoftBody*>& bodies)
 {
-    SubstepBody* const substeps = substepsAt(body);
-    if (substeps && m_state.m_kept.begin(body, m_dt)) return substeps->predictAway();
-    m_state.bringHome(body);
+    if (!m_state.m_kept.any()) return;
+    const auto isAway = [&](int i) { return bodies[i]->isActive() && m_state.m_kept.isAway(*bodies[i]); };
+    for (int i = 0; i < bodies.size(); ++i)
+    {
+        if (!isAway(i)) continue;
+        SubstepBody* const substeps = substepsAt(*bodies[i]);
+        if (substeps && m_state.m_kept.begin(*bodies[i], m_dt))
+            substeps->predictAway();
+        else
+            m_state.m_kept.callHome(*bodies[i]);
+    }
+    for (int i = 0; i < bodies.size(); ++i)
+        if (isAway(i) && !m_state.m_kept.stepOf(*bodies[i])) m_state.bringHome(*bodies[i]);
 }
 
 // Brings a body home whose step has begun without its nodes, and predicts them. The broad phase keeps the bounds.
@@ -233,8 +245,7 @@ void SoftBodySolver::Work::bringHome(btSoftBody& body)
 void SoftBodySolver::Work::predict(const btAlignedObjectArray<btSoftBody*>& bodies, btScalar dt)
 {
     m_dt = dt;
-    for (int i = 0; i < bodies.size(); ++i)
-        if (bodies[i]->isActive() && m_state.m_kept.isAway(*bodies[i])) beginAway(*bodies[i]);
+    beginAway(bodies);
     const auto isAway = [this](const btSoftBody& body) { return m_state.m_kept.isAway(body); };
     const auto isPlainAt = [&](int i)
     { return bodies[i]->isActive() && !isAway(*bodies[i]) && isPlain(*bodies[i], dt); };
@@ -429,7 +440,7 @@ void SoftBodySolver::Work::beginSubsteps(const btAlignedObjectArray<btSoftBody*>
     {
         const btSoftBody& body = *bodies[int(i)];
         BodyContacts* const contacts = contactsOf(body);
-        substepsOf(body)->begin(body, contacts ? &contacts->m_contacts : nullptr, threads);
+        substepsOf(body)->begin(body, contacts ? &contacts->m_contacts : nullptr, m_state.mirrorOf(body), threads);
     };
     forBodies(
         static_cast<std::size_t>(bodies.size()), m_threads,
@@ -509,18 +520,32 @@ bool SoftBodySolver::Work::mayFollow(const btAlignedObjectArray<btSoftBody*>& bo
            std::none_of(&bodies[0], &bodies[0] + bodies.size(), isRigid);
 }
 
+// Brings bodies home whose step has begun away and for which isNeeded(body) is true, with one wait.
+template <class Needed>
+void SoftBodySolver::Work::bringHomeWhere(const btAlignedObjectArray<btSoftBody*>& bodies, const Needed& isNeeded)
+{
+    if (!m_state.m_kept.any()) return;
+    std::vector<btSoftBody*> called;
+    for (int i = 0; i < bodies.size(); ++i)
+    {
+        if (!m_state.m_kept.stepOf(*bodies[i]) || !isNeeded(*bodies[i])) continue;
+        m_state.m_kept.callHome(*bodies[i]);
+        called.push_back(bodies[i]);
+    }
+    for (btSoftBody* body : called)
+        bringHomeInStep(*body);
+}
+
 // Brings bodies home that nothing holds, whose momentum the host keeps.
 void SoftBodySolver::Work::bringFreeHome(const btAlignedObjectArray<btSoftBody*>& bodies)
 {
-    for (int i = 0; i < bodies.size(); ++i)
-        if (m_state.m_kept.stepOf(*bodies[i]) && !contactsOf(*bodies[i]) && !m_state.m_kept.hasPins(*bodies[i]))
-            bringHome(*bodies[i]);
+    bringHomeWhere(bodies,
+                   [this](const btSoftBody& body) { return !contactsOf(body) && !m_state.m_kept.hasPins(body); });
 }
 
 void SoftBodySolver::Work::bringAllHome(const btAlignedObjectArray<btSoftBody*>& bodies)
 {
-    for (int i = 0; i < bodies.size(); ++i)
-        if (m_state.m_kept.stepOf(*bodies[i])) bringHomeInStep(*bodies[i]);
+    bringHomeWhere(bodies, [](const btSoftBody&) { return true; });
 }
 
 // Brings a body home after the step's begin(), which knows whether it is away.
@@ -535,8 +560,7 @@ void SoftBodySolver::Work::bringHomeInStep(btSoftBody& body)
 // Brings bodies home that the device has not solved.
 void SoftBodySolver::Work::bringUnsolvedHome(const btAlignedObjectArray<btSoftBody*>& bodies)
 {
-    for (int i = 0; i < bodies.size(); ++i)
-        if (m_state.m_kept.stepOf(*bodies[i]) && !clothOf(*bodies[i]).m_isSolved) bringHomeInStep(*bodies[i]);
+    bringHomeWhere(bodies, [this](const btSoftBody& body) { return !clothOf(body).m_isSolved; });
 }
 
 // Stores the nodes of kept bodies that are at home. Returns the number of bodies whose step began and ended away.
@@ -582,7 +606,10 @@ void SoftBodySolver::solveBodies(StepParts& parts)
     parts.m_readMs += watch.lapMs();
     if (work.solveByBullet(m_softBodySet)) parts.m_bulletMs += watch.lapMs();
     m_state->m_statistics.m_clothsOnDevice =
-        work.m_onDevice + work.m_solver->solve(work.m_touched, work.m_free, m_state->m_found.source(), work.m_stage);
+        work.m_onDevice +
+        // What the device has refused goes to the host.
+        work.m_solver->solve(work.m_touched, work.m_free, m_state->m_found.source(),
+                             work.m_onDevice > 0 ? nullptr : work.m_stage);
     double linksMs = 0;
     for (const std::unique_ptr<BulletLinks>& links : work.m_bulletLinks)
         linksMs += links->ms();

@@ -6,6 +6,7 @@
 
 #include "bullet_plugin/adapter/body_jobs.h"
 #include "bullet_plugin/adapter/body_nodes.h"
+#include "bullet_plugin/adapter/mirrors.h"
 #include "bullet_plugin/core/solver/cloth_parts.h"
 #include "bullet_plugin/core/solver/link_strength.h"
 
@@ -224,7 +225,8 @@ void SubstepBody::setLinks(const btSoftBody& body, ThreadTeam* threads)
     m_isSet = true;
 }
 
-void SubstepBody::begin(const btSoftBody& body, ClothContacts* recorded, ThreadTeam* threads)
+void SubstepBody::begin(const btSoftBody& body, ClothContacts* recorded, const ClothMirror* mirror,
+                        ThreadTeam* threads)
 {
     // Links and contacts have the same parts. A cloth of one part is the same however it is cut.
     if (recorded && recorded->m_parts->revision() != m_parts.revision())
@@ -241,7 +243,8 @@ void SubstepBody::begin(const btSoftBody& body, ClothContacts* recorded, ThreadT
     if (!recorded)
     {
         m_alone.m_nodes.resize(nodeCount(body));
-        m_alone.start(kNoMesh, m_parts, nullptr);
+        const bool isKnown = mirror && mirror->id() != kNoMesh && mirror->order().partsRevision() == m_parts.revision();
+        m_alone.start(isKnown ? mirror->id() : kNoMesh, m_parts, isKnown ? &mirror->order() : nullptr);
         m_alone.m_limit.startStep(m_noFaces);
         m_alone.m_perSecond = static_cast<float>(body.m_sst.isdt);
     }

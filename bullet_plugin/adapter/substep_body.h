@@ -18,6 +18,8 @@
 
 namespace drape
 {
+class ClothMirror;
+
 class SubstepBody
 {
 public:
@@ -54,8 +56,9 @@ public:
     static int substepsOf(const btSoftBody& body);
 
     // Prepares the solver's step, once, after canSolveNow(). recorded: the cloth with the paths that were recorded;
-    // null: alone().
-    void begin(const btSoftBody& body, ClothContacts* recorded, ThreadTeam* threads);
+    // null: alone(). mirror: the body's, null if there is none. It names the mesh of a cloth without pairs, so that a
+    // device's data stays the same.
+    void begin(const btSoftBody& body, ClothContacts* recorded, const ClothMirror* mirror, ThreadTeam* threads);
     // Gives the recorded paths the ends that the prediction knows more precisely, unless they were moved since. Records
     // the paths of alone().
     void readPaths(const btSoftBody& body, ClothContacts* recorded, ThreadTeam* threads);

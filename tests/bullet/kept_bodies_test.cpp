@@ -28,7 +28,7 @@ struct Outcome
     std::uint64_t m_hash = kHashStart;
     int m_away = 0;            // steps that left the nodes on the device
     std::string m_reason;      // why the body could not be kept
-    std::size_t m_status = 0;  // of all steps
+    std::size_t m_status = 0;  // bits of all steps
 };
 
 std::uint64_t hashOfAll(const btSoftBody& body, std::uint64_t hash)

@@ -51,7 +51,10 @@ KeptId KeptNodes::add(std::size_t count)
         m_device->wait();  // for transfers into the memory that grows
         m_nodes.extend(*m_device, 2 * (first + count), 2 * first);
         m_read->reserve(m_device, first + count);
-        m_slots.push_back({first, count, 0, KeptBoxes(), false});
+        m_written->reserve(m_device, first + count);
+        m_slots.emplace_back();
+        m_slots.back().m_first = first;
+        m_slots.back().m_count = count;
         slot = m_slots.end() - 1;
     }
     slot->m_isUsed = true;
@@ -68,8 +71,11 @@ void KeptNodes::write(KeptId id, const std::vector<KeptNode>& nodes)
 {
     Slot& slot = m_slots[id];
     slot.m_boxes.m_areFinite = false;
-    m_nodes.write(*m_device, nodes.data(), slot.m_count, placeOf(slot, slot.m_turn));
-    m_device->wait();
+    if (slot.m_waitsAtWrite == m_device->waits()) m_device->wait();
+    slot.m_waitsAtWrite = m_device->waits();
+    KeptNode* const sent = m_written->data() + slot.m_first;
+    std::copy(nodes.begin(), nodes.end(), sent);
+    m_nodes.write(*m_device, sent, slot.m_count, placeOf(slot, slot.m_turn));
 }
 
 void KeptNodes::beginRead(KeptId id)

@@ -25,7 +25,7 @@ public:
     KeptId add(std::size_t count);
     void remove(KeptId id);
     std::size_t count(KeptId id) const { return m_slots[id].m_count; }
-    // Replaces the nodes. Waits.
+    // Replaces the nodes. Returns after enqueueing; waits if there was no wait since the cloth's last call.
     void write(KeptId id, const std::vector<KeptNode>& nodes);
     // Enqueues the transfer of the nodes to the host; they are at nodesRead() after a wait for the device. Allocates no
     // memory.
@@ -56,6 +56,7 @@ private:
         std::uint32_t m_turn = 0;              // which of two copies is valid
         KeptBoxes m_boxes;
         bool m_isUsed = false;
+        std::size_t m_waitsAtWrite = SIZE_MAX;  // waits for the device before the last write()
     };
 
     // Each cloth has two copies of its nodes, one behind the other.
@@ -76,7 +77,9 @@ private:
     Buffer<KeptBounds> m_bounds{"kept nodes"};
     std::vector<KeptCloth> m_detectedSent, m_solvedSent;
     std::vector<KeptBounds> m_emptyBounds, m_boundsRead;
+    // By cloth, in the order of their memory.
     std::unique_ptr<Staging<KeptNode>> m_read = std::make_unique<Staging<KeptNode>>();
+    std::unique_ptr<Staging<KeptNode>> m_written = std::make_unique<Staging<KeptNode>>();
     KeptLaunch m_launch = {};
 };
 }  // namespace drape

@@ -162,6 +162,7 @@ void SolveStage::solveLarge()
                 passLevels(pass);
             }
         }
+        m_device->flush();
     }
     pass.m_substep = DRAPE_CLOSING;
     limit(pass);

@@ -1,6 +1,7 @@
 #include "step_solver.h"
 
 #include <algorithm>
+#include <functional>
 #include <iterator>
 
 #include "kernels/lib/closing_sweeps.h"
@@ -346,6 +347,10 @@ void StepSolver::divide(const std::vector<SolverCloth>& cloths, const std::vecto
         (stage && PackedStep::fits(cloth) ? m_onDevice : m_onHost).push_back(cloth);
     for (const SolverCloth& cloth : free)
         (stage && PackedStep::fits(cloth) ? m_onDevice : m_freeOnHost).push_back(cloth);
+    // In an order that does not depend on contacts, so that less is packed anew.
+    std::sort(m_onDevice.begin(), m_onDevice.end(),
+              [](const SolverCloth& a, const SolverCloth& b)
+              { return std::less<const Substeps*>()(a.m_substeps, b.m_substeps); });
 }
 
 // Accepts results of the device. Returns the number of cloths that it has solved.
