@@ -1,13 +1,11 @@
 // Predicts the motion of a soft body as btSoftBody::predictMotion() of Bullet 3.24 does, in one pass over its nodes.
 //
 // Replaces Bullet's function for plain bodies: those that nothing but their nodes' forces and gravity moves. Positions,
-// velocities, bounds and node volumes are Bullet's to the bit. The node tree keeps its shape where Bullet would remove
-// and insert leaves. Cost: linear in the nodes. With 16,641 nodes on two busy cores it takes 2.3 ms, with the
-// velocities that substeps need; Bullet's function alone takes 5.3 ms.
+// velocities and bounds are Bullet's to the bit. The node tree waits for updateNodeTree() (node_tree.h). Cost: linear
+// in the nodes.
 //
-// Threads: predictPlain() writes the body and its trees alone and calls no function of the app. Bullet's own function
-// also writes the broad phase, which bodies share: updateBroadphase() does that, on one thread. The world's info is
-// only read.
+// Threads: predictPlain() writes the body alone and calls no function of the app. Bullet's own function also writes the
+// broad phase, which bodies share: updateBroadphase() does that, on one thread. The world's info is only read.
 #pragma once
 
 #include "BulletSoftBody/btSoftBody.h"
@@ -16,7 +14,7 @@
 namespace drape
 {
 // Returns whether predictPlain() replaces Bullet's function: the body has no wind, pressure, volume, pose, cluster or
-// face tree that would have to be updated, and time passes. dt: s.
+// face tree that would have to be updated, is not to collide with soft bodies, and time passes. dt: s.
 bool isPlain(const btSoftBody& body, btScalar dt);
 
 // Predicts a plain body over dt seconds. Allocates no memory. threads: null for the caller alone.

@@ -68,8 +68,12 @@ void holdStill(btSoftBody& body, const BodyContacts* contacts)
 // Working data kept from step to step.
 struct SoftBodySolver::Work
 {
-    explicit Work(PluginState& state)
-        : m_threads(state.threads()), m_solver(new StepSolver(m_threads)), m_failures(state.failures())
+    Work(PluginState& state, const btSoftBodySolver& owner)
+        : m_state(state),
+          m_owner(owner),
+          m_threads(state.threads()),
+          m_solver(new StepSolver(m_threads)),
+          m_failures(state.failures())
     {
     }
 
@@ -106,6 +110,8 @@ struct SoftBodySolver::Work
         return i;
     }
     void predict(const btAlignedObjectArray<btSoftBody*>& bodies, btScalar dt);
+    void predictAndLeaveTree(btSoftBody& body, btScalar dt, ThreadTeam* threads);
+    bool seesReads(const btAlignedObjectArray<btSoftBody*>& bodies) const;
     void beginSubsteps(const btAlignedObjectArray<btSoftBody*>& bodies);
     bool take(btSoftBody& body);
     BodyContacts* contactsOf(const btSoftBody& body) { return m_step ? m_step->contactsOf(body) : nullptr; }
@@ -119,6 +125,8 @@ struct SoftBodySolver::Work
         state.pipeline().giveBackRoom();
     }
 
+    PluginState& m_state;
+    const btSoftBodySolver& m_owner;
     ThreadTeam& m_threads;
     std::unique_ptr<CollisionStep> m_step;  // null until it is needed
     std::unique_ptr<StepSolver> m_solver;
@@ -136,6 +144,7 @@ struct SoftBodySolver::Work
     std::vector<btSoftBody*> m_taken;                                // bodies that Drape handles in this step
     std::vector<const btSoftBody*> m_predicted;                      // in this step, sorted by address
     bool m_listed = false;                                           // m_predicted is whole
+    bool m_seesReads = false;                                        // see seesReads(), in this step
     bool m_detected = false;                                         // the paths of all bodies with a pair are recorded
     std::size_t m_asleep = 0;                                        // cloths that are not among them
     StepParts m_parts;                                               // parts of the running step, without its waits
@@ -147,7 +156,7 @@ SoftBodySolver::SoftBodySolver(Plugin& plugin) : m_state(plugin.state())
     if (!m_state) return;
     const auto start = [&]
     {
-        m_work.reset(new Work(*m_state));
+        m_work.reset(new Work(*m_state, *this));
         m_state->addSolver(this);
     };
     guarded(start, [&](const CaughtException&) { m_work.reset(); });
@@ -174,6 +183,23 @@ void SoftBodySolver::predictMotion(btScalar dt)
     m_work->m_parts.m_mirrorMs += watch.lapMs();
 }
 
+// Returns whether Bullet's collision reads the node trees through this solver alone.
+bool SoftBodySolver::Work::seesReads(const btAlignedObjectArray<btSoftBody*>& bodies) const
+{
+    for (int i = 0; i < bodies.size(); ++i)
+        if (bodies[i]->getSoftBodySolver() != &m_owner) return false;
+    return true;
+}
+
+// Predicts the body, and updates its node tree unless that can wait until something reads it.
+void SoftBodySolver::Work::predictAndLeaveTree(btSoftBody& body, btScalar dt, ThreadTeam* threads)
+{
+    predictPlain(body, dt, threads);
+    NodeTree* const tree = m_state.nodeTreeOf(&m_owner, body);
+    if (tree) *tree = m_seesReads ? NodeTree::Behind : NodeTree::Current;
+    if (!tree || !m_seesReads) updateNodeTree(body, threads);
+}
+
 // Predicts the bodies, plain ones side by side, and keeps what substeps need of the step's start. Bullet predicts the
 // others on this thread: its function may allocate memory and call the app. The broad phase gets all bounds in the
 // order of the bodies. Allocates no memory.
@@ -195,7 +221,16 @@ void SoftBodySolver::Work::predict(const btAlignedObjectArray<btSoftBody*>& bodi
     const auto sizeOf = [&](std::size_t i)
     { return isPlainAt(int(i)) ? static_cast<std::size_t>(bodies[int(i)]->m_nodes.size()) : 0; };
     const auto predictAt = [&](std::size_t i, ThreadTeam* threads)
-    { predictOne(*bodies[int(i)], threads, [&](btSoftBody& body) { predictPlain(body, dt, threads); }); };
+    { predictOne(*bodies[int(i)], threads, [&](btSoftBody& body) { predictAndLeaveTree(body, dt, threads); }); };
+    const auto byBullet = [&](btSoftBody& body)
+    {
+        if (NodeTree* const tree = m_state.nodeTreeOf(&m_owner, body)) *tree = NodeTree::Bullets;
+        predictByBullet(body, dt);
+    };
+    m_seesReads = seesReads(bodies);
+    // Trees of bodies that sleep are read, too.
+    for (int i = 0; i < bodies.size() && !m_seesReads; ++i)
+        m_state.updateNodeTree(*bodies[i]);
     forBodies(static_cast<std::size_t>(bodies.size()), m_threads, sizeOf, predictAt);
     for (int i = 0; i < bodies.size(); ++i)
     {
@@ -203,7 +238,7 @@ void SoftBodySolver::Work::predict(const btAlignedObjectArray<btSoftBody*>& bodi
         if (isPlainAt(i))
             updateBroadphase(*bodies[i]);
         else
-            predictOne(*bodies[i], nullptr, [&](btSoftBody& body) { predictByBullet(body, dt); });
+            predictOne(*bodies[i], nullptr, byBullet);
     }
 }
 
@@ -518,6 +553,20 @@ void SoftBodySolver::solveConstraints(btScalar dt)
     if (m_work->m_failures != m_state->failures()) endFailedStep();
 }
 
+// Brings the node trees up to date that Bullet's collision of the pair reads.
+void SoftBodySolver::processCollision(btSoftBody* body, const btCollisionObjectWrapper* obstacle)
+{
+    if (m_work) m_state->updateNodeTree(*body);
+    btDefaultSoftBodySolver::processCollision(body, obstacle);
+}
+
+void SoftBodySolver::processCollision(btSoftBody* body, btSoftBody* other)
+{
+    if (m_work) m_state->updateNodeTree(*body);
+    if (m_work) m_state->updateNodeTree(*other);
+    btDefaultSoftBodySolver::processCollision(body, other);
+}
+
 void SoftBodySolver::updateSoftBodies()
 {
     Stopwatch watch;
@@ -530,8 +579,14 @@ void SoftBodySolver::updateSoftBodies()
     };
     // Normals are written to the body alone, and nothing else is read: integrateMotion() of Bullet 3.24 only calls
     // updateNormals().
-    forBodies(static_cast<std::size_t>(m_softBodySet.size()), m_work->m_threads, sizeOf,
-              [this](std::size_t i, ThreadTeam*) { m_softBodySet[int(i)]->integrateMotion(); });
+    const auto update = [this](std::size_t i, ThreadTeam*)
+    {
+        m_softBodySet[int(i)]->integrateMotion();
+        // The nodes have moved since a pair of the step read the tree.
+        NodeTree* const tree = m_work->m_seesReads ? m_state->nodeTreeOf(this, *m_softBodySet[int(i)]) : nullptr;
+        if (tree && *tree == NodeTree::Current) *tree = NodeTree::Behind;
+    };
+    forBodies(static_cast<std::size_t>(m_softBodySet.size()), m_work->m_threads, sizeOf, update);
     m_state->m_statistics.m_normalsMs = watch.lapMs();
 }
 }  // namespace drape
