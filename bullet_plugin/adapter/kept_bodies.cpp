@@ -189,7 +189,8 @@ const char* KeptBodies::keep(btSoftBody& body)
     SolveStage* const solver = stage();
     if (!solver) return "no OpenCL device solves cloth (Settings::m_solverPlace)";
     if (const char* reason = reasonForBulletsLinks(m_state, body)) return reason;
-    if (!isPlain(body)) return "the soft body has wind, pressure, volume, a pose or a face tree";
+    if (!isPlain(body))
+        return "the soft body has wind, pressure, volume, a pose or a face tree, or is to collide with soft bodies";
     if (body.m_anchors.size() > 0) return "the soft body has anchors";
     const auto made = m_bodies.try_emplace(&body);
     Kept& kept = made.first->second;
@@ -259,6 +260,7 @@ bool KeptBodies::fetch(btSoftBody& body)
         node.m_v = vectorOf(nodes[i].m_velocity);
     }
     body.updateNormals();
+    m_state.leaveNodeTree(body);
     for (std::size_t k = 0; k < kept->m_pins.size(); ++k)
         kept->m_pinnedAt[k] = body.m_nodes[kept->m_pins[k]].m_x;
     return true;
@@ -403,7 +405,7 @@ void KeptBodies::endStep(btSoftBody& body, bool hasPair)
     kept->m_hadPair = hasPair;
     const bool isSameSize = solver->kept().count(kept->m_id) == static_cast<std::size_t>(body.m_nodes.size());
     if (kept->m_isAway)
-        kept->m_isStored = false;  // the boxes are the device's now
+        kept->m_isStored = false;                         // the boxes are the device's now
     else if (isSameSize && (hasPair || anyPinned(body)))  // a free body would come home in the next step
         store(body, *kept);
     kept->m_isBegun = false;

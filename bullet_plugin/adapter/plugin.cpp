@@ -223,6 +223,19 @@ void Plugin::teleported(const btCollisionObject* object)
     if (m_state && object) m_state->teleported(object);
 }
 
+void Plugin::updateNodeTree(btSoftBody& body)
+{
+    const DefaultFloats floats;
+    if (m_state) m_state->updateNodeTree(body);
+}
+
+void Plugin::updateNodeTrees(const btCollisionWorld& world)
+{
+    const btCollisionObjectArray& objects = world.getCollisionObjectArray();
+    for (int i = 0; i < objects.size(); ++i)
+        if (btSoftBody* const body = btSoftBody::upcast(objects[i])) updateNodeTree(*body);
+}
+
 void Plugin::setOneSided(const btCollisionShape* shape, bool oneSided)
 {
     if (m_state) m_state->setOneSided(shape, oneSided);

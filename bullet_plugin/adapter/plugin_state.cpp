@@ -179,29 +179,63 @@ bool PluginState::ownsSolver(const btSoftBodySolver* solver) const
 
 void PluginState::setStepped(const btSoftBodySolver* solver, const btAlignedObjectArray<btSoftBody*>& bodies)
 {
-    std::vector<WorldBody>& stepped = m_stepped[solver];
-    stepped.reserve(static_cast<std::size_t>(bodies.size()));  // before the last step's list goes
-    stepped.clear();
+    WorldBodies& before = m_stepped[solver];
+    WorldBodies stepped;
+    stepped.reserve(static_cast<std::size_t>(bodies.size()));
     for (int i = 0; i < bodies.size(); ++i)
     {
-        stepped.push_back(WorldBody{bodies[i], bodies[i]->getBroadphaseHandle()});
+        const WorldBody* const known = findIn(before, *bodies[i]);
+        stepped.push_back({bodies[i], bodies[i]->getBroadphaseHandle(), known ? known->m_tree : NodeTree::Bullets});
         m_unstepped.erase(bodies[i]);
     }
     std::sort(stepped.begin(), stepped.end(),
               [](const WorldBody& a, const WorldBody& b) { return std::less<const void*>()(a.m_body, b.m_body); });
+    before.swap(stepped);
+}
+
+const PluginState::WorldBody* PluginState::findIn(const WorldBodies& bodies, const btSoftBody& body)
+{
+    const auto found = std::lower_bound(bodies.begin(), bodies.end(), &body,
+                                        [](const WorldBody& listed, const btSoftBody* other)
+                                        { return std::less<const void*>()(listed.m_body, other); });
+    return found != bodies.end() && found->m_body == &body ? &*found : nullptr;
 }
 
 const btSoftBodySolver* PluginState::steppingSolver(const btSoftBody& body) const
 {
     for (const auto& entry : m_stepped)
     {
-        const auto found = std::lower_bound(entry.second.begin(), entry.second.end(), &body,
-                                            [](const WorldBody& stepped, const btSoftBody* other)
-                                            { return std::less<const void*>()(stepped.m_body, other); });
-        if (found != entry.second.end() && found->m_body == &body && found->m_proxy == body.getBroadphaseHandle())
-            return entry.first;
+        const WorldBody* const found = findIn(entry.second, body);
+        if (found && found->m_proxy == body.getBroadphaseHandle()) return entry.first;
     }
     return nullptr;
+}
+
+NodeTree* PluginState::nodeTreeOf(const btSoftBodySolver* solver, const btSoftBody& body)
+{
+    const auto stepped = m_stepped.find(solver);
+    const WorldBody* const found = stepped == m_stepped.end() ? nullptr : findIn(stepped->second, body);
+    return found ? &found->m_tree : nullptr;
+}
+
+void PluginState::leaveNodeTree(const btSoftBody& body)
+{
+    for (const auto& entry : m_stepped)
+    {
+        const WorldBody* const found = findIn(entry.second, body);
+        if (found && found->m_tree == NodeTree::Current) found->m_tree = NodeTree::Behind;
+    }
+}
+
+void PluginState::updateNodeTree(btSoftBody& body)
+{
+    for (const auto& entry : m_stepped)
+    {
+        const WorldBody* const found = findIn(entry.second, body);
+        if (!found || found->m_tree != NodeTree::Behind) continue;
+        drape::updateNodeTree(body, m_threads.get());
+        found->m_tree = NodeTree::Current;
+    }
 }
 
 void PluginState::markUnstepped(const btSoftBody& body)

@@ -21,6 +21,7 @@
 #include "bullet_plugin/adapter/kept_bodies.h"
 #include "bullet_plugin/adapter/kinematic_motion.h"
 #include "bullet_plugin/adapter/mirrors.h"
+#include "bullet_plugin/adapter/node_tree.h"
 #include "bullet_plugin/adapter/pair_algorithm.h"
 #include "bullet_plugin/core/pipeline/pipeline.h"
 #include "bullet_plugin/core/public_call.h"
@@ -88,6 +89,12 @@ public:
     void markUnstepped(const btSoftBody& body);
     // Returns whether a solver of this plugin steps the body, or will as far as is known.
     bool steps(const btSoftBody& body) const;
+    // Returns the state of the node tree of a body that the solver steps; null if it is not listed.
+    NodeTree* nodeTreeOf(const btSoftBodySolver* solver, const btSoftBody& body);
+    // Tells that the body's nodes have moved.
+    void leaveNodeTree(const btSoftBody& body);
+    // Brings the body's node tree up to date if a step of Drape left it behind. Allocates no memory.
+    void updateNodeTree(btSoftBody& body);
     // Returns the motions of kinematic objects in the step of that solver's world.
     KinematicMotions& motionsOf(const btSoftBodySolver* solver) { return m_motions[solver]; }
 
@@ -139,7 +146,11 @@ private:
     {
         const btSoftBody* m_body;
         const btBroadphaseProxy* m_proxy;
+        mutable NodeTree m_tree;  // changes while the body stays listed
     };
+    using WorldBodies = std::vector<WorldBody>;  // sorted by body
+
+    static const WorldBody* findIn(const WorldBodies& bodies, const btSoftBody& body);
 
     void prepareCloth(const btSoftBody& body);
     void prepareShape(const btCollisionObjectWrapper& wrap);
@@ -168,7 +179,7 @@ private:
 
     bool m_isWired = false;
     std::vector<const btSoftBodySolver*> m_solvers;
-    std::unordered_map<const btSoftBodySolver*, std::vector<WorldBody>> m_stepped;  // sorted by body
+    std::unordered_map<const btSoftBodySolver*, WorldBodies> m_stepped;
     std::unordered_map<const btSoftBody*, const btBroadphaseProxy*> m_unstepped;
     std::unordered_map<const btSoftBodySolver*, KinematicMotions> m_motions;
     std::vector<PairNote> m_notes;                          // in the order of dispatch

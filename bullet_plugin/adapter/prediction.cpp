@@ -1,6 +1,5 @@
 #include "bullet_plugin/adapter/prediction.h"
 
-#include <atomic>
 #include <cmath>
 #include <cstddef>
 #include <mutex>
@@ -33,13 +32,11 @@ struct NodeStep
     explicit NodeStep(const btSoftBody& body)
         : m_dt(body.m_sst.sdt),
           m_gravity(body.m_worldInfo->m_gravity * m_dt),
-          m_mostChange(body.m_worldInfo->m_maxDisplacement / m_dt),
-          m_state(body.m_sst)
+          m_mostChange(body.m_worldInfo->m_maxDisplacement / m_dt)
     {
     }
 
-    // Moves the node and fits its leaf of the tree. Returns whether the leaf changed.
-    bool predict(btSoftBody::Node& node) const
+    void predict(btSoftBody::Node& node) const
     {
         if (node.m_im > 0) node.m_v += m_gravity;
         node.m_q = node.m_x;
@@ -52,44 +49,12 @@ struct NodeStep
         node.m_v += change;
         node.m_x += node.m_v * m_dt;
         node.m_f = btVector3(0, 0, 0);
-        if (!node.m_leaf) return false;
-        btDbvtVolume volume = btDbvtVolume::FromCR(node.m_x, m_state.radmrg);
-        if (node.m_leaf->volume.Contain(volume)) return false;
-        volume.Expand(btVector3(m_state.updmrg, m_state.updmrg, m_state.updmrg));
-        volume.SignedExpand(node.m_v * m_state.velmrg);
-        node.m_leaf->volume = volume;
-        return true;
     }
 
     btScalar m_dt;
     btVector3 m_gravity;
     btScalar m_mostChange;
-    const btSoftBody::SolverState& m_state;
 };
-
-btDbvtNode* firstLeafOf(btDbvtNode* node)
-{
-    while (node->isinternal())
-        node = node->childs[0];
-    return node;
-}
-
-// Fits the volumes of inner nodes to the leaves, from the leaves up.
-void refit(btDbvt& tree)
-{
-    if (!tree.m_root) return;
-    btDbvtNode* node = firstLeafOf(tree.m_root);
-    while (btDbvtNode* const parent = node == tree.m_root ? nullptr : node->parent)
-    {
-        if (node == parent->childs[0])
-        {
-            node = firstLeafOf(parent->childs[1]);
-            continue;
-        }
-        Merge(parent->childs[0]->volume, parent->childs[1]->volume, parent->volume);
-        node = parent;
-    }
-}
 
 void setBounds(btSoftBody& body, const Bounds& bounds)
 {
@@ -111,7 +76,9 @@ bool isPlain(const btSoftBody& body)
 {
     const btSoftBody::Config& config = body.m_cfg;
     const bool isPushed = config.kLF > 0 || config.kDG > 0 || config.kPR != 0 || config.kVC > 0;
-    return !isPushed && !body.m_pose.m_bframe && body.m_clusters.size() == 0 && body.m_fdbvt.empty() &&
+    // Bullet finds contacts of two such bodies as far as the volumes of their leaves reach.
+    const bool readsLeaves = config.collisions & (btSoftBody::fCollision::VF_SS | btSoftBody::fCollision::VF_DD);
+    return !isPushed && !readsLeaves && !body.m_pose.m_bframe && body.m_clusters.size() == 0 && body.m_fdbvt.empty() &&
            !body.m_reducedModel && body.m_worldInfo;
 }
 
@@ -140,30 +107,24 @@ void predictPlain(btSoftBody& body, btScalar dt, ThreadTeam* threads)
 {
     beginPlain(body, dt);
     const NodeStep step(body);
-    std::atomic<bool> leavesChanged{false};
     std::mutex mutex;
     Bounds all;
     const auto predict = [&](std::size_t first, std::size_t last)
     {
-        bool changed = false;
         Bounds bounds;
         for (std::size_t i = first; i < last; ++i)
         {
             btSoftBody::Node& node = body.m_nodes[static_cast<int>(i)];
-            changed = step.predict(node) || changed;
+            step.predict(node);
             bounds.add({node.m_x, node.m_x});
         }
-        if (changed) leavesChanged = true;
         const std::lock_guard<std::mutex> lock(mutex);
         all.add(bounds);
     };
     forRanges(static_cast<std::size_t>(body.m_nodes.size()), threads, predict);
     setBounds(body, all);
-    if (leavesChanged) refit(body.m_ndbvt);
     body.m_rcontacts.resizeNoInitialize(0);
     body.m_scontacts.resizeNoInitialize(0);
-    body.m_ndbvt.optimizeIncremental(1);
-    body.m_cdbvt.optimizeIncremental(1);
 }
 
 void updateBroadphase(btSoftBody& body)

@@ -1,13 +1,11 @@
 // Predicts the motion of a soft body as btSoftBody::predictMotion() of Bullet 3.24 does, in one pass over its nodes.
 //
 // Replaces Bullet's function for plain bodies: those that nothing but their nodes' forces and gravity moves. Positions,
-// velocities, bounds and node volumes are Bullet's to the bit. The node tree keeps its shape where Bullet would remove
-// and insert leaves. Cost: linear in the nodes. With 16,641 nodes on two busy cores it takes 2.3 ms, with the
-// velocities that substeps need; Bullet's function alone takes 5.3 ms.
+// velocities and bounds are Bullet's to the bit. The node tree waits for updateNodeTree() (node_tree.h). Cost: linear
+// in the nodes.
 //
-// Threads: predictPlain() writes the body and its trees alone and calls no function of the app. Bullet's own function
-// also writes the broad phase, which bodies share: updateBroadphase() does that, on one thread. The world's info is
-// only read.
+// Threads: predictPlain() writes the body alone and calls no function of the app. Bullet's own function also writes the
+// broad phase, which bodies share: updateBroadphase() does that, on one thread. The world's info is only read.
 #pragma once
 
 #include "BulletSoftBody/btSoftBody.h"
@@ -15,7 +13,8 @@
 
 namespace drape
 {
-// Returns whether the body has no wind, pressure, volume, pose, cluster or face tree that would have to be updated.
+// Returns whether the body has no wind, pressure, volume, pose, cluster or face tree that would have to be updated, and
+// is not to collide with soft bodies.
 bool isPlain(const btSoftBody& body);
 // Returns whether predictPlain() replaces Bullet's function in the coming step of dt seconds: time passes, too, and no
 // link has changed.

@@ -68,8 +68,12 @@ void holdStill(btSoftBody& body, const BodyContacts* contacts)
 // Working data kept from step to step.
 struct SoftBodySolver::Work
 {
-    explicit Work(PluginState& state)
-        : m_state(state), m_threads(state.threads()), m_solver(new StepSolver(m_threads)), m_failures(state.failures())
+    Work(PluginState& state, const btSoftBodySolver& owner)
+        : m_state(state),
+          m_owner(owner),
+          m_threads(state.threads()),
+          m_solver(new StepSolver(m_threads)),
+          m_failures(state.failures())
     {
     }
 
@@ -119,6 +123,8 @@ struct SoftBodySolver::Work
     ClothContacts& clothOf(const btSoftBody& body);
     void bringAllHome(const btAlignedObjectArray<btSoftBody*>& bodies);
     std::size_t endKept(const btAlignedObjectArray<btSoftBody*>& bodies);
+    void predictAndLeaveTree(btSoftBody& body, btScalar dt, ThreadTeam* threads);
+    bool seesReads(const btAlignedObjectArray<btSoftBody*>& bodies) const;
     std::size_t substepNodes(const btSoftBody& body) const;
     void beginSubsteps(const btAlignedObjectArray<btSoftBody*>& bodies);
     void readPaths(const btAlignedObjectArray<btSoftBody*>& bodies);
@@ -138,6 +144,7 @@ struct SoftBodySolver::Work
     }
 
     PluginState& m_state;
+    const btSoftBodySolver& m_owner;
     ThreadTeam& m_threads;
     btScalar m_dt = 0;                      // s, of the prediction
     std::unique_ptr<CollisionStep> m_step;  // null until it is needed
@@ -156,6 +163,7 @@ struct SoftBodySolver::Work
     std::vector<btSoftBody*> m_taken;                                // bodies that Drape handles in this step
     std::vector<const btSoftBody*> m_predicted;                      // in this step, sorted by address
     bool m_listed = false;                                           // m_predicted is whole
+    bool m_seesReads = false;                                        // see seesReads(), in this step
     bool m_detected = false;                                         // the paths of all bodies with a pair are recorded
     bool m_begun = false;                                            // beginSubsteps() was called in this step
     std::size_t m_onDevice = 0;                                      // cloths solved behind the detection
@@ -170,7 +178,7 @@ SoftBodySolver::SoftBodySolver(Plugin& plugin) : m_state(plugin.state())
     if (!m_state) return;
     const auto start = [&]
     {
-        m_work.reset(new Work(*m_state));
+        m_work.reset(new Work(*m_state, *this));
         m_state->addSolver(this);
     };
     guarded(start, [&](const CaughtException&) { m_work.reset(); });
@@ -235,8 +243,25 @@ void SoftBodySolver::Work::bringHome(btSoftBody& body)
 {
     m_state.bringHome(body);
     const btVector3 bounds[2] = {body.m_bounds[0], body.m_bounds[1]};
-    predictOne(body, &m_threads, [this](btSoftBody& plain) { predictPlain(plain, m_dt, &m_threads); });
+    predictOne(body, &m_threads, [this](btSoftBody& plain) { predictAndLeaveTree(plain, m_dt, &m_threads); });
     std::copy(bounds, bounds + 2, body.m_bounds);
+}
+
+// Returns whether Bullet's collision reads the node trees through this solver alone.
+bool SoftBodySolver::Work::seesReads(const btAlignedObjectArray<btSoftBody*>& bodies) const
+{
+    for (int i = 0; i < bodies.size(); ++i)
+        if (bodies[i]->getSoftBodySolver() != &m_owner) return false;
+    return true;
+}
+
+// Predicts the body, and updates its node tree unless that can wait until something reads it.
+void SoftBodySolver::Work::predictAndLeaveTree(btSoftBody& body, btScalar dt, ThreadTeam* threads)
+{
+    predictPlain(body, dt, threads);
+    NodeTree* const tree = m_state.nodeTreeOf(&m_owner, body);
+    if (tree) *tree = m_seesReads ? NodeTree::Behind : NodeTree::Current;
+    if (!tree || !m_seesReads) updateNodeTree(body, threads);
 }
 
 // Predicts the bodies, plain ones side by side, and keeps what substeps need of the step's start. Bullet predicts the
@@ -245,6 +270,7 @@ void SoftBodySolver::Work::bringHome(btSoftBody& body)
 void SoftBodySolver::Work::predict(const btAlignedObjectArray<btSoftBody*>& bodies, btScalar dt)
 {
     m_dt = dt;
+    m_seesReads = seesReads(bodies);
     beginAway(bodies);
     const auto isAway = [this](const btSoftBody& body) { return m_state.m_kept.isAway(body); };
     const auto isPlainAt = [&](int i)
@@ -252,7 +278,15 @@ void SoftBodySolver::Work::predict(const btAlignedObjectArray<btSoftBody*>& bodi
     const auto sizeOf = [&](std::size_t i)
     { return isPlainAt(int(i)) ? static_cast<std::size_t>(bodies[int(i)]->m_nodes.size()) : 0; };
     const auto predictAt = [&](std::size_t i, ThreadTeam* threads)
-    { predictOne(*bodies[int(i)], threads, [&](btSoftBody& body) { predictPlain(body, dt, threads); }); };
+    { predictOne(*bodies[int(i)], threads, [&](btSoftBody& body) { predictAndLeaveTree(body, dt, threads); }); };
+    const auto byBullet = [&](btSoftBody& body)
+    {
+        if (NodeTree* const tree = m_state.nodeTreeOf(&m_owner, body)) *tree = NodeTree::Bullets;
+        predictByBullet(body, dt);
+    };
+    // Trees of bodies that sleep are read, too.
+    for (int i = 0; i < bodies.size() && !m_seesReads; ++i)
+        m_state.updateNodeTree(*bodies[i]);
     forBodies(static_cast<std::size_t>(bodies.size()), m_threads, sizeOf, predictAt);
     for (int i = 0; i < bodies.size(); ++i)
     {
@@ -260,7 +294,7 @@ void SoftBodySolver::Work::predict(const btAlignedObjectArray<btSoftBody*>& bodi
         if (isPlainAt(i) || isAway(*bodies[i]))
             updateBroadphase(*bodies[i]);
         else
-            predictOne(*bodies[i], nullptr, [&](btSoftBody& body) { predictByBullet(body, dt); });
+            predictOne(*bodies[i], nullptr, byBullet);
     }
 }
 
@@ -605,11 +639,10 @@ void SoftBodySolver::solveBodies(StepParts& parts)
     work.takeForeign(m_softBodySet);
     parts.m_readMs += watch.lapMs();
     if (work.solveByBullet(m_softBodySet)) parts.m_bulletMs += watch.lapMs();
+    // The host solves what the device has refused.
     m_state->m_statistics.m_clothsOnDevice =
-        work.m_onDevice +
-        // What the device has refused goes to the host.
-        work.m_solver->solve(work.m_touched, work.m_free, m_state->m_found.source(),
-                             work.m_onDevice > 0 ? nullptr : work.m_stage);
+        work.m_onDevice + work.m_solver->solve(work.m_touched, work.m_free, m_state->m_found.source(),
+                                               work.m_onDevice > 0 ? nullptr : work.m_stage);
     double linksMs = 0;
     for (const std::unique_ptr<BulletLinks>& links : work.m_bulletLinks)
         linksMs += links->ms();
@@ -715,6 +748,20 @@ void SoftBodySolver::solveConstraints(btScalar dt)
     if (m_work->m_failures != m_state->failures()) endFailedStep();
 }
 
+// Brings the node trees up to date that Bullet's collision of the pair reads.
+void SoftBodySolver::processCollision(btSoftBody* body, const btCollisionObjectWrapper* obstacle)
+{
+    if (m_work) m_state->updateNodeTree(*body);
+    btDefaultSoftBodySolver::processCollision(body, obstacle);
+}
+
+void SoftBodySolver::processCollision(btSoftBody* body, btSoftBody* other)
+{
+    if (m_work) m_state->updateNodeTree(*body);
+    if (m_work) m_state->updateNodeTree(*other);
+    btDefaultSoftBodySolver::processCollision(body, other);
+}
+
 void SoftBodySolver::updateSoftBodies()
 {
     Stopwatch watch;
@@ -728,8 +775,14 @@ void SoftBodySolver::updateSoftBodies()
     };
     // Normals are written to the body alone, and nothing else is read: integrateMotion() of Bullet 3.24 only calls
     // updateNormals().
-    forBodies(static_cast<std::size_t>(m_softBodySet.size()), m_work->m_threads, sizeOf,
-              [this](std::size_t i, ThreadTeam*) { m_softBodySet[int(i)]->integrateMotion(); });
+    const auto update = [this](std::size_t i, ThreadTeam*)
+    {
+        m_softBodySet[int(i)]->integrateMotion();
+        // The nodes have moved since a pair of the step read the tree.
+        NodeTree* const tree = m_work->m_seesReads ? m_state->nodeTreeOf(this, *m_softBodySet[int(i)]) : nullptr;
+        if (tree && *tree == NodeTree::Current) *tree = NodeTree::Behind;
+    };
+    forBodies(static_cast<std::size_t>(m_softBodySet.size()), m_work->m_threads, sizeOf, update);
     m_state->m_statistics.m_normalsMs = watch.lapMs();
 }
 }  // namespace drape

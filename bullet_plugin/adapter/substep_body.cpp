@@ -225,8 +225,7 @@ void SubstepBody::setLinks(const btSoftBody& body, ThreadTeam* threads)
     m_isSet = true;
 }
 
-void SubstepBody::begin(const btSoftBody& body, ClothContacts* recorded, const ClothMirror* mirror,
-                        ThreadTeam* threads)
+void SubstepBody::begin(const btSoftBody& body, ClothContacts* recorded, const ClothMirror* mirror, ThreadTeam* threads)
 {
     // Links and contacts have the same parts. A cloth of one part is the same however it is cut.
     if (recorded && recorded->m_parts->revision() != m_parts.revision())

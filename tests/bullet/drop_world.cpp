@@ -33,6 +33,7 @@ void addSprings(btSoftBody& body, const ClothGrid& grid)
     for (std::size_t i = 0; i < grid.m_bendingSprings.size(); i += 2)
         body.appendLink(grid.m_bendingSprings[i], grid.m_bendingSprings[i + 1], bending);
 }
+}  // namespace
 
 std::unique_ptr<btSoftBody> makeCloth(btSoftBodyWorldInfo& info, const ClothSpec& spec)
 {
@@ -53,7 +54,6 @@ std::unique_ptr<btSoftBody> makeCloth(btSoftBodyWorldInfo& info, const ClothSpec
     body->m_cfg.kDF = btScalar(0.6);
     return body;
 }
-}  // namespace
 
 MeshShape::MeshShape(const TriangleMesh& mesh) : m_mesh(mesh)
 {

@@ -32,6 +32,9 @@ struct ClothSpec
     btScalar m_damping = 0.1f;                // share of the velocity lost in a step, 0 to 1
 };
 
+// Makes a cloth that no world has yet.
+std::unique_ptr<btSoftBody> makeCloth(btSoftBodyWorldInfo& info, const ClothSpec& spec);
+
 // A mesh as Bullet's static shape; owns the arrays that the shape reads. The shape's margin is kMargin.
 class MeshShape
 {

@@ -1,4 +1,4 @@
-// Drape's prediction against Bullet's own, the node trees that it keeps, and worlds of many bodies on several threads.
+// Drape's prediction and node trees against Bullet's own, and worlds of many bodies on several threads.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "BulletSoftBody/btSoftBodyHelpers.h"
+#include "bullet_plugin/adapter/node_tree.h"
 #include "bullet_plugin/adapter/prediction.h"
 #include "scenes/shapes.h"
 #include "tests/bullet/drop_world.h"
@@ -96,6 +97,7 @@ TEST_P(PredictionTest, IsBulletsToTheBitOnAnyNumberOfThreads)
         {
             ASSERT_TRUE(isPlain(*is.m_body, kDt));
             predictPlain(*is.m_body, kDt, threads > 0 ? &team : nullptr);
+            updateNodeTree(*is.m_body, threads > 0 ? &team : nullptr);
             expected.m_body->predictMotion(kDt);
             ASSERT_NO_FATAL_FAILURE(expectSame(*is.m_body, *expected.m_body));
             EXPECT_EQ(checkedLeaves(is.m_body->m_ndbvt.m_root), is.m_body->m_nodes.size());
@@ -148,6 +150,7 @@ TEST(Prediction, LeavesBodiesToBulletThatNeedMore)
     expectLeft(body.m_cfg.timescale, btScalar(0));
     expectLeft(body.m_bUpdateRtCst, true);
     expectLeft(body.m_pose.m_bframe, true);
+    expectLeft(body.m_cfg.collisions, body.m_cfg.collisions | btSoftBody::fCollision::VF_SS);
     body.initializeFaceTree();
     EXPECT_FALSE(isPlain(body, kDt));
 }
@@ -165,7 +168,7 @@ TEST(Prediction, RaysAndNodesOfBulletFindClothAfterEachStep)
     for (int step = 0; step < 30; ++step)
     {
         world.step();
-        // Bullet's rays grow leaves of the node tree when they make that of the faces.
+        // Bullet's rays make the tree of nodes anew together with that of the faces.
         ASSERT_EQ(checkedLeaves(cloth.m_ndbvt.m_root), cloth.m_nodes.size()) << "step " << step;
         const btSoftBody::Face& face = cloth.m_faces[(7 * step) % cloth.m_faces.size()];
         const btVector3 middle = (face.m_n[0]->m_x + face.m_n[1]->m_x + face.m_n[2]->m_x) / 3;

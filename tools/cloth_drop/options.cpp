@@ -24,7 +24,7 @@ constexpr const char* kResultsText =
     "  rigid         Bullet's step outside of the solver's calls and of dispatch\n"
     "  dispatch      Bullet's collision detection, where Drape notes its pairs\n"
     "  mirror        pairs, mirrors of bodies and meshes, motions of obstacles, bounds beside moving obstacles\n"
-    "  predict       forces, predicted positions, bounds and node trees, and velocities before them\n"
+    "  predict       forces, predicted positions, bounds, and velocities before them\n"
     "  read          links and nodes of bodies whose links Drape solves\n"
     "  upload        copying nodes for the detection, enqueueing\n"
     "  wait          detection and download of its contacts\n"

@@ -142,6 +142,14 @@ public:
     // unknown objects.
     void teleported(const btCollisionObject* object);
 
+    // Brings the soft body's tree of nodes (btSoftBody::m_ndbvt) up to date with the nodes' positions. Drape does so by
+    // itself for whatever of Bullet's collides with the body, and leaves the tree behind in other steps. Call it before
+    // the app reads or draws the tree, or takes a sleeping body to a world without Drape. Does nothing if the tree is
+    // up to date. Never fails, and never changes results.
+    void updateNodeTree(btSoftBody& body);
+    // Updates the trees of all soft bodies of a world: before debugDrawWorld() with btIDebugDraw::DBG_DrawAabb.
+    void updateNodeTrees(const btCollisionWorld& world);
+
     // Makes only the front of a mesh shape solid: the side from which its triangles run counter-clockwise. Cloth behind
     // it may come out. Off by default. A mirrored mesh keeps its front. The shape is remembered by its address until
     // this is switched off. If memory runs out, nothing changes, and cloth stands still in the next step with

@@ -132,7 +132,7 @@ struct StepParts
 {
     // Time for pairs, mirrors of bodies and meshes, motions of obstacles, and bounds beside moving obstacles.
     double m_mirrorMs = 0;
-    // Time of the prediction: forces, predicted positions, bounds, node trees, and velocities before it.
+    // Time of the prediction: forces, predicted positions, bounds, and velocities before it.
     double m_predictMs = 0;
     // Time for copying nodes for the detection and for enqueueing.
     double m_uploadMs = 0;

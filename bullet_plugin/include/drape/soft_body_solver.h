@@ -41,6 +41,10 @@ public:
     void predictMotion(btScalar dt) override;
     // Finds the contacts and solves the soft bodies over `dt` (s). Called by Bullet.
     void solveConstraints(btScalar dt) override;
+    // Collides a soft body with another object, as Bullet's default solver does. Called by Bullet's own algorithms.
+    void processCollision(btSoftBody* body, const btCollisionObjectWrapper* obstacle) override;
+    // Collides two soft bodies, as Bullet's default solver does. Called by Bullet's own algorithms.
+    void processCollision(btSoftBody* body, btSoftBody* other) override;
     // Updates the normals of the soft bodies. Called by Bullet.
     void updateSoftBodies() override;
 
