@@ -91,15 +91,17 @@ void RigidBodies::addRows(const btSoftBody& body, const SolverNodes& nodes, Rigi
         RigidContact row = {};
         row.m_node = nodeIndex(body, contact.m_node);
         row.m_body = indexOf(object);
-        row.m_normal = vec3Of(contact.m_cti.m_normal);
+        RigidPlane& plane = row.m_plane;
+        plane.m_normal = vec3Of(contact.m_cti.m_normal);
         row.m_arm = vec3Of(contact.m_c1);
         const btVector3 start = vectorOf(nodes.start(row.m_node));
-        const float advance = dt * vec3Dot(row.m_normal, velocityAt(m_bodies[row.m_body], row.m_arm));
-        row.m_gap = float(contact.m_cti.m_normal.dot(start) + contact.m_cti.m_offset) + advance;
+        const float advance = dt * vec3Dot(plane.m_normal, velocityAt(m_bodies[row.m_body], row.m_arm));
+        plane.m_gap = float(contact.m_cti.m_normal.dot(start) + contact.m_cti.m_offset) + advance;
         // Bullet's contacts act on approaching nodes alone. Beside edges of a mesh their normals may lead inwards.
-        const bool leaves = vec3Dot(row.m_normal, nodes.way(row.m_node)) > advance;
-        row.m_recover = row.m_gap < 0 && !leaves ? targetGap(row.m_gap, float(contact.m_c4), margin) - row.m_gap : 0.0f;
-        row.m_friction = float(body.m_cfg.kDF * object.getFriction());
+        const bool leaves = vec3Dot(plane.m_normal, nodes.way(row.m_node)) > advance;
+        plane.m_recover =
+            plane.m_gap < 0 && !leaves ? targetGap(plane.m_gap, float(contact.m_c4), margin) - plane.m_gap : 0.0f;
+        plane.m_friction = float(body.m_cfg.kDF * object.getFriction());
         rows.add(row);
     }
 }

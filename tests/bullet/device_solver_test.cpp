@@ -183,6 +183,28 @@ TEST_P(DeviceSolverTest, AFreeClothTurnsAsOnTheHost)
     EXPECT_EQ(expectSame({addTurning}), std::size_t(kSteps));
 }
 
+// Cloths of one leaf and of several that touch the sphere's mesh, a box, a ball and a plane. Bullet's own algorithms
+// find the contacts of these, and the host solves them.
+TEST_P(DeviceSolverTest, ClothOnBoxBallPlaneAndMeshMovesAsOnTheHost)
+{
+    btBoxShape box(btVector3(btScalar(0.2), btScalar(0.1), btScalar(0.2)));
+    btSphereShape ball(btScalar(0.2));
+    btStaticPlaneShape plane(btVector3(0, 1, 0), btScalar(0.1));
+    const auto at = [](btScalar x, btScalar y, btScalar z)
+    { return btTransform(btQuaternion::getIdentity(), btVector3(x, y, z)); };
+    for (const int nodes : {17, 60})
+    {
+        const auto addAll = [&](DropWorld& world, std::vector<btSoftBody*>& cloths)
+        {
+            clothsOf(1, nodes, 1)(world, cloths);
+            world.addObstacle(box, at(btScalar(0.45), btScalar(0.2), 0));
+            world.addKinematic(ball, at(btScalar(-0.4), btScalar(0.15), btScalar(0.2)));
+            world.addObstacle(plane);
+        };
+        EXPECT_LT(expectSame({addAll}), std::size_t(kSteps)) << nodes;
+    }
+}
+
 // A cloth that hangs on a rigid body is solved on the host, beside one on the device.
 TEST_P(DeviceSolverTest, TheHostSolvesWhatTheDeviceCannot)
 {

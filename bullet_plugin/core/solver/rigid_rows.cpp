@@ -1,7 +1,8 @@
 #include "rigid_rows.h"
 
 #include <algorithm>
-#include <cmath>
+
+#include "kernels/lib/rigid_row.h"
 
 namespace drape
 {
@@ -73,10 +74,7 @@ void RigidRows::begin(float time, float correctionTime, float passed)
     m_correctionTime = correctionTime;
     m_passed = passed;
     for (ContactState& state : m_contacts)
-    {
-        state.m_multiplier = 0;
-        state.m_held = vec3(0, 0, 0);
-    }
+        state.m_hold = {vec3(0, 0, 0), 0};
 }
 
 void RigidRows::end()
@@ -92,24 +90,14 @@ void RigidRows::end()
 void RigidRows::project(SolverNodes& nodes, ContactState& state)
 {
     const RigidContact& contact = state.m_contact;
-    const Vec3 normal = contact.m_normal;
     const float inverseMass = nodes.inverseMass(contact.m_node);
-    const float inverseMobility = 1 / std::max(inverseMass + mobility(contact.m_body, contact.m_arm, normal), 1e-30f);
     if (!(inverseMass > 0)) return;
     const Vec3 carried = vec3AddScaled(state.m_carried, velocityAt(contact.m_body, contact.m_arm), m_time);
     const Vec3 way = vec3Sub(nodes.displacement(contact.m_node), carried);
-    const float along = vec3Dot(normal, way);
-    const float level = contact.m_gap < 0 ? contact.m_recover * m_passed : -contact.m_gap;
-    const float violation = level - along;
-    if (!(violation > 0) && !(state.m_multiplier > 0)) return;
-    const float pushed = std::max(0.0f, state.m_multiplier + violation * inverseMobility);
-    Vec3 held = vec3AddScaled(state.m_held, vec3AddScaled(way, normal, -along), -inverseMobility);
-    const float most = contact.m_friction * pushed, wanted = vec3Length(held);
-    if (wanted > most) held = vec3Scale(held, most / wanted);
-    const Vec3 by = vec3AddScaled(vec3Sub(held, state.m_held), normal, pushed - state.m_multiplier);
-    push(nodes, contact.m_node, contact.m_body, contact.m_arm, by);
-    state.m_multiplier = pushed;
-    state.m_held = held;
+    const float yields = mobility(contact.m_body, contact.m_arm, contact.m_plane.m_normal);
+    Vec3 by;
+    if (rigidContactPush(&contact.m_plane, &state.m_hold, way, inverseMass, yields, m_passed, &by))
+        push(nodes, contact.m_node, contact.m_body, contact.m_arm, by);
 }
 
 void RigidRows::project(SolverNodes& nodes, AnchorState& state)
@@ -124,7 +112,8 @@ void RigidRows::project(SolverNodes& nodes, AnchorState& state)
         const float both =
             nodes.nodes()[anchor.m_node].m_inverseMass + mobility(anchor.m_body, anchor.m_arm, direction);
         if (!(both > 0)) continue;
-        push(nodes, anchor.m_node, anchor.m_body, anchor.m_arm, vec3Scale(direction, anchor.m_share * error / both));
+        push(nodes, anchor.m_node, anchor.m_body, anchor.m_arm,
+             vec3Scale(direction, rigidAnchorPush(error, anchor.m_share, both)));
     }
 }
 

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "kernels/shared/solver.h"
 #include "solver_nodes.h"
 
 namespace drape
@@ -27,11 +28,8 @@ struct RigidBody
 struct RigidContact
 {
     std::uint32_t m_node, m_body;
-    Vec3 m_normal;    // unit, from the body to the cloth
-    Vec3 m_arm;       // m, from the body's centre of mass to the contact
-    float m_gap;      // m, between node and plane at the step's start; negative is too close
-    float m_recover;  // m, of a negative gap, what the step mends
-    float m_friction;
+    Vec3 m_arm;  // m, from the body's centre of mass to the contact
+    RigidPlane m_plane;
 };
 
 // A node that follows a point of a body.
@@ -53,7 +51,7 @@ public:
     void add(const RigidContact& contact)
     {
         if (empty()) m_reference = (*m_bodies)[contact.m_body].m_centre;
-        m_contacts.push_back({contact, vec3(0, 0, 0), vec3(0, 0, 0), 0});
+        m_contacts.push_back({contact, vec3(0, 0, 0), {vec3(0, 0, 0), 0}});
     }
     void add(const RigidAnchor& anchor)
     {
@@ -81,9 +79,8 @@ private:
     struct ContactState
     {
         RigidContact m_contact;
-        Vec3 m_carried;      // m, displacement of the body's point from the step's start to that of the substep
-        Vec3 m_held;         // friction in this substep, in units of the multiplier
-        float m_multiplier;  // in this substep
+        Vec3 m_carried;  // m, displacement of the body's point from the step's start to that of the substep
+        RigidHold m_hold;
     };
     struct AnchorState
     {
