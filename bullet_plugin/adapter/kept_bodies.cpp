@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "BulletCollision/BroadphaseCollision/btBroadphaseInterface.h"
 #include "BulletCollision/CollisionShapes/btCompoundShape.h"
@@ -151,6 +152,12 @@ void writeNormals(const btSoftBody& body, const KeptNode* nodes, float* normals)
     }
 }
 
+// Returns the number of nodes that both the body and the device have.
+int countOf(const btSoftBody& body, std::size_t stored)
+{
+    return std::min(body.m_nodes.size(), static_cast<int>(stored));
+}
+
 bool anyPinned(const btSoftBody& body)
 {
     for (int i = 0; i < body.m_nodes.size(); ++i)
@@ -192,15 +199,42 @@ const char* KeptBodies::keep(btSoftBody& body)
     if (!isPlain(body))
         return "the soft body has wind, pressure, volume, a pose or a face tree, or is to collide with soft bodies";
     if (body.m_anchors.size() > 0) return "the soft body has anchors";
-    const auto made = m_bodies.try_emplace(&body);
-    Kept& kept = made.first->second;
-    if (made.second || kept.m_revision != solver->revision() ||
-        solver->kept().count(kept.m_id) != static_cast<std::size_t>(body.m_nodes.size()))
-        kept.m_id = solver->kept().add(static_cast<std::size_t>(body.m_nodes.size()));
-    kept.m_revision = solver->revision();
-    kept.m_step = KeptStep();
-    kept.m_isAway = kept.m_isBegun = kept.m_isReading = false;
+    const Kept* const known = find(body);
+    if (!known || known->m_revision != solver->revision()) makeRoom(body, m_bodies[&body]);
     return nullptr;
+}
+
+// Gives the body memory on the device. It is at home then.
+void KeptBodies::makeRoom(const btSoftBody& body, Kept& kept)
+{
+    kept = Kept();
+    kept.m_count = static_cast<std::size_t>(body.m_nodes.size());
+    kept.m_id = stage()->kept().add(kept.m_count);
+    kept.m_revision = stage()->revision();
+}
+
+void KeptBodies::freeRoom(const Kept& kept)
+{
+    SolveStage* const solver = stage();
+    if (solver && kept.m_revision == solver->revision()) solver->kept().remove(kept.m_id);
+}
+
+void KeptBodies::takeNodes(const btSoftBody& body)
+{
+    Kept* const kept = find(body);
+    if (kept) kept->m_isAway = kept->m_isReading = false;
+}
+
+void KeptBodies::forgetRemoved(const btSoftBodySolver* solver, const btAlignedObjectArray<btSoftBody*>& bodies)
+{
+    for (auto entry = m_bodies.begin(); entry != m_bodies.end();)
+    {
+        const int count = bodies.size();
+        const bool isRemoved =
+            entry->second.m_solver == solver && bodies.findLinearSearch(const_cast<btSoftBody*>(entry->first)) == count;
+        if (isRemoved) freeRoom(entry->second);
+        entry = isRemoved ? m_bodies.erase(entry) : std::next(entry);
+    }
 }
 
 void KeptBodies::release(btSoftBody& body)
@@ -208,8 +242,7 @@ void KeptBodies::release(btSoftBody& body)
     Kept* const kept = find(body);
     if (!kept) return;
     fetch(body);
-    if (SolveStage* const solver = stage())
-        if (kept->m_revision == solver->revision()) solver->kept().remove(kept->m_id);
+    freeRoom(*kept);
     m_bodies.erase(&body);
 }
 
@@ -253,7 +286,7 @@ bool KeptBodies::fetch(btSoftBody& body)
     if (!kept || !kept->m_isAway) return false;
     const KeptNode* const nodes = read(*kept);
     if (!nodes) return false;
-    for (int i = 0; i < body.m_nodes.size(); ++i)
+    for (int i = 0; i < countOf(body, kept->m_count); ++i)
     {
         btSoftBody::Node& node = body.m_nodes[i];
         node.m_x = node.m_q = vectorOf(nodes[i].m_position);
@@ -270,8 +303,8 @@ bool KeptBodies::fetch(const btSoftBody& body, const NodeArrays& arrays)
 {
     Kept* const kept = find(body);
     const KeptNode* const nodes = kept && kept->m_isAway ? read(*kept) : nullptr;
-    if (!nodes) return false;
-    for (std::size_t i = 0; i < static_cast<std::size_t>(body.m_nodes.size()); ++i)
+    if (!nodes || kept->m_count != static_cast<std::size_t>(body.m_nodes.size())) return false;
+    for (std::size_t i = 0; i < kept->m_count; ++i)
     {
         if (arrays.m_positions) write(nodes[i].m_position, arrays.m_positions + 3 * i);
         if (arrays.m_velocities) write(nodes[i].m_velocity, arrays.m_velocities + 3 * i);
@@ -308,6 +341,7 @@ bool KeptBodies::begin(btSoftBody& body, btScalar dt)
 {
     Kept& kept = *find(body);
     kept.m_isBegun = false;
+    if (kept.m_count != static_cast<std::size_t>(body.m_nodes.size())) return false;
     if (!isPlain(body, dt) || body.m_anchors.size() > 0 || anyPinMoved(body, kept)) return false;
     beginPlain(body, dt);
     const KeptStep step = stepOver(body, kept.m_id);
@@ -353,7 +387,7 @@ void KeptBodies::comeHome(btSoftBody& body)
     kept.m_isAway = kept.m_isBegun = false;
     if (!nodes) return;
     std::size_t pin = 0;
-    for (int i = 0; i < body.m_nodes.size(); ++i)
+    for (int i = 0; i < countOf(body, kept.m_count); ++i)
     {
         btSoftBody::Node& node = body.m_nodes[i];
         const bool isPin = pin < kept.m_pins.size() && kept.m_pins[pin] == i;
@@ -374,7 +408,13 @@ bool KeptBodies::hadPair(const btSoftBody& body) const
 
 void KeptBodies::store(btSoftBody& body, Kept& kept)
 {
-    std::vector<KeptNode> nodes(static_cast<std::size_t>(body.m_nodes.size()));
+    if (kept.m_count != static_cast<std::size_t>(body.m_nodes.size()))
+    {
+        freeRoom(kept);
+        kept.m_count = static_cast<std::size_t>(body.m_nodes.size());
+        kept.m_id = stage()->kept().add(kept.m_count);
+    }
+    std::vector<KeptNode> nodes(kept.m_count);
     kept.m_pins.clear();
     kept.m_pinnedAt.clear();
     for (std::size_t i = 0; i < nodes.size(); ++i)
@@ -392,7 +432,7 @@ void KeptBodies::store(btSoftBody& body, Kept& kept)
     kept.m_isAway = true;
 }
 
-void KeptBodies::endStep(btSoftBody& body, bool hasPair)
+void KeptBodies::endStep(btSoftBody& body, const btSoftBodySolver* bulletSolver, bool hasPair)
 {
     Kept* const kept = find(body);
     if (!kept) return;
@@ -402,11 +442,11 @@ void KeptBodies::endStep(btSoftBody& body, bool hasPair)
         m_bodies.erase(&body);
         return;
     }
+    kept->m_solver = bulletSolver;
     kept->m_hadPair = hasPair;
-    const bool isSameSize = solver->kept().count(kept->m_id) == static_cast<std::size_t>(body.m_nodes.size());
     if (kept->m_isAway)
-        kept->m_isStored = false;                         // the boxes are the device's now
-    else if (isSameSize && (hasPair || anyPinned(body)))  // a free body would come home in the next step
+        kept->m_isStored = false;         // the boxes are the device's now
+    else if (hasPair || anyPinned(body))  // a free body would come home in the next step
         store(body, *kept);
     kept->m_isBegun = false;
 }

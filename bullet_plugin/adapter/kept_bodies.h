@@ -27,8 +27,10 @@ class KeptBodies
 public:
     explicit KeptBodies(PluginState& state) : m_state(state) {}
 
-    // Stores the body's nodes and keeps it from now on. Returns null, or why it cannot be kept.
+    // Keeps the body from the end of its next step on. Returns null, or why it cannot be kept.
     const char* keep(btSoftBody& body);
+    // Takes the nodes as Bullet has them.
+    void takeNodes(const btSoftBody& body);
     // Gives the body its nodes and keeps it no more.
     void release(btSoftBody& body);
     // Starts the transfer of a body's nodes to the host.
@@ -40,6 +42,8 @@ public:
     // Gives all bodies their nodes as far as possible, and keeps none. Throws nothing.
     void abandon() noexcept;
 
+    // Forgets bodies that the solver stepped and that are not among its bodies any more. Does not follow them.
+    void forgetRemoved(const btSoftBodySolver* solver, const btAlignedObjectArray<btSoftBody*>& bodies);
     bool any() const { return !m_bodies.empty(); }
     bool isAway(const btSoftBody& body) const;
     // Returns whether any body's step has begun away.
@@ -59,13 +63,15 @@ public:
     // Returns whether a solver's step had contacts for the body when it was last away or stored.
     bool hadPair(const btSoftBody& body) const;
     // Ends a step: bodies at home are stored. hasPair: the step looked for contacts of the body.
-    void endStep(btSoftBody& body, bool hasPair);
+    void endStep(btSoftBody& body, const btSoftBodySolver* solver, bool hasPair);
 
 private:
     struct Kept
     {
         KeptId m_id = 0;
-        std::uint64_t m_revision = 0;  // the stage's
+        const btSoftBodySolver* m_solver = nullptr;  // that made the last step; compared, not followed
+        std::size_t m_count = 0;                     // nodes
+        std::uint64_t m_revision = 0;                // the stage's
         bool m_isAway = false;
         bool m_isBegun = false;  // m_step is the running step
         bool m_hadPair = false;
@@ -82,6 +88,8 @@ private:
     Kept* find(const btSoftBody& body);
     const Kept* find(const btSoftBody& body) const;
     SolveStage* stage() const;
+    void makeRoom(const btSoftBody& body, Kept& kept);
+    void freeRoom(const Kept& kept);
     void store(btSoftBody& body, Kept& kept);
     const KeptNode* read(Kept& kept);
     bool anyPinMoved(const btSoftBody& body, const Kept& kept) const;

@@ -198,6 +198,11 @@ std::string Plugin::keepOnDevice(btSoftBody& body, bool keep)
         });
 }
 
+void Plugin::takeNodes(const btSoftBody& body)
+{
+    if (m_state) m_state->m_kept.takeNodes(body);
+}
+
 void Plugin::beginFetch(const btSoftBody& body)
 {
     if (m_state) m_state->m_kept.beginFetch(body);

@@ -306,6 +306,7 @@ void SoftBodySolver::beginStep(btScalar dt, std::vector<StepObstacle>& obstacles
     m_state->dropNotes(this);  // notes of a dispatch that no solve followed
     m_state->setStepped(this, m_softBodySet);
     if (!m_state->ready()) return listPredicted();
+    m_state->m_kept.forgetRemoved(this, m_softBodySet);
     Stopwatch watch;
     KinematicMotions& motions = m_state->motionsOf(this);
     listTaken();
@@ -605,7 +606,7 @@ std::size_t SoftBodySolver::Work::endKept(const btAlignedObjectArray<btSoftBody*
     {
         if (!isSteppedBody(*bodies[i])) continue;
         away += m_state.m_kept.isAway(*bodies[i]);
-        m_state.m_kept.endStep(*bodies[i], contactsOf(*bodies[i]) != nullptr);
+        m_state.m_kept.endStep(*bodies[i], &m_owner, contactsOf(*bodies[i]) != nullptr);
     }
     return away;
 }

@@ -224,12 +224,54 @@ TEST_P(KeptBodyTest, NodesThatAnAppSetsAreTakenOnRequest)
             {
                 if (keeps) plugin.fetch(cloth);
                 cloth.addVelocity(btVector3(btScalar(0.3), 0, 0));
-                if (keeps) plugin.keepOnDevice(cloth, true);
+                if (keeps) plugin.takeNodes(cloth);
             }
+            if (keeps) plugin.keepOnDevice(cloth, true);  // changes nothing
             world.step();
         }
         if (keeps) plugin.fetch(cloth);
         return hashOfAll(cloth, kHashStart);
+    };
+    EXPECT_EQ(runWith(false), runWith(true));
+}
+
+// The body has more nodes than the device keeps.
+TEST_P(KeptBodyTest, ANodeIsAddedAsAtHome)
+{
+    Scene scene = {clothOf(17), nullptr, nullptr};
+    scene.m_beforeStep = [](btRigidBody&, btSoftBody& cloth, int step)
+    {
+        if (step != 30) return;
+        cloth.appendNode(btVector3(2, 2, 0), btScalar(0.1));
+        cloth.appendLink(0, cloth.m_nodes.size() - 1);
+    };
+    EXPECT_GT(expectSame(scene), kSteps / 4);
+}
+
+// Bodies come and go, and others take their places in the device's memory.
+TEST_P(KeptBodyTest, RemovedBodiesAreForgotten)
+{
+    const auto runWith = [&](bool keeps)
+    {
+        Settings settings = keeps ? GetParam().m_settings : hostSettings();
+        settings.m_solver = Solver::Drape;
+        settings.m_solverPlace = keeps ? SolverPlace::Device : SolverPlace::Host;
+        Plugin plugin(settings);
+        MeshShape shape(makeSphere(0.4f, 3));
+        DropWorld world(&plugin);
+        world.addKinematic(shape.shape());
+        std::uint64_t hash = kHashStart;
+        for (const int nodes : {17, 17, 23, 17, 9})
+        {
+            btSoftBody& cloth = world.addCloth(clothOf(nodes));
+            if (keeps) plugin.keepOnDevice(cloth, true);
+            world.step(40);
+            if (keeps) plugin.fetch(cloth);
+            hash = hashOfAll(cloth, hash);
+            world.remove(cloth);
+            world.step();
+        }
+        return hash;
     };
     EXPECT_EQ(runWith(false), runWith(true));
 }

@@ -113,16 +113,18 @@ public:
 
     // Leaves a soft body's nodes on the device from the end of its next step on, so that a step copies none of them.
     // Bullet's nodes then stay as they are until fetch(). What an app sets in them meanwhile does not count, except
-    // positions of pinned nodes. To change the nodes, call fetch(), set them, and call this again: it takes the nodes
-    // as Bullet has them.
+    // positions of pinned nodes. To change the nodes, call fetch(), set them, and call takeNodes().
     //
     // A step that needs the nodes on the host brings them there by itself, and computes the same. It does so beside
     // objects whose contacts Bullet's own algorithm finds, at impacts, in free fall, and with moved pins or another
     // time step. StepStatistics::m_clothsAway counts the others.
     //
-    // Returns an empty string, or why the body cannot be kept; "out of memory" if memory runs out. The body must live
-    // until `keep` is false, which fetches its nodes. If the device fails, the nodes of the last fetch() remain.
+    // Returns an empty string, or why the body cannot be kept; "out of memory" if memory runs out. The body must stay
+    // alive and in its world until `keep` is false, which fetches its nodes. If the device fails, the nodes of the last
+    // fetch() remain.
     std::string keepOnDevice(btSoftBody& body, bool keep);
+    // Takes a kept body's nodes as Bullet has them: those of the last fetch(), with what the app has changed since.
+    void takeNodes(const btSoftBody& body);
     // Starts the transfer of a kept body's nodes to the host, and returns at once. The next fetch() takes these nodes,
     // and waits only if no step followed.
     void beginFetch(const btSoftBody& body);
