@@ -120,6 +120,26 @@ TEST_P(Kinematic, AThinPlateIsWrappedByClothThatLiesAskew)
     }
 }
 
+// No place is left for the cloth between two plates that cross within a step. The next step examines where the cloth
+// is: one plate leans, so that cloth on the other one intersects it.
+TEST_P(Kinematic, PlatesThatCrossPassClothAndSaySo)
+{
+    constexpr btScalar kHeight = btScalar(0.3);  // m
+    const btQuaternion lean(btVector3(0, 0, 1), btScalar(0.2));
+    KinematicScene scene(makeBox(2, 0.02f, 2), shiftedBy(btVector3(0, -kHeight, 0)), 1.0f, btVector3(0, 0, 0),
+                         GetParam().m_settings);
+    btRigidBody& other = scene.m_world.addKinematic(scene.m_shape.shape(), btTransform(lean, btVector3(0, kHeight, 0)));
+    const auto stepAt = [&](btScalar height)
+    {
+        other.setWorldTransform(btTransform(lean, btVector3(0, height, 0)));
+        scene.step(shiftedBy(btVector3(0, -kHeight, 0)));
+        return scene.m_plugin.statistics().m_status;
+    };
+    EXPECT_EQ(stepAt(kHeight), std::uint32_t(kStepGood));
+    EXPECT_EQ(stepAt(btScalar(-0.2)), std::uint32_t(kStepSurfacePassed));
+    EXPECT_EQ(stepAt(btScalar(-0.2)), std::uint32_t(kStepStartsIntersecting));
+}
+
 // Discrete steps look at the end of each only: what comes by farther than the thickness misses the cloth, unless a step
 // ends there. The share of nodes that are behind the plate after it came up from one of 12 heights, evenly spaced over
 // the way of a step, is what tests/README.md documents.

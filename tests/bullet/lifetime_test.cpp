@@ -151,6 +151,46 @@ TEST_P(Lifetime, ANodeThatIsNoNumberIsCountedAndKeptToItself)
     }
 }
 
+// The report goes on while the node stays as it is, and ends when it is finite again.
+TEST_P(Lifetime, ANodeThatIsNoNumberIsCountedWithoutAPairToo)
+{
+    const btScalar nan = std::numeric_limits<btScalar>::quiet_NaN();
+    MeshShape shape(makeBox(2.0f, 0.4f, 2.0f));
+    Plugin plugin(GetParam().m_settings);
+    DropWorld world(&plugin);
+    btCollisionObject& box = world.addObstacle(shape.shape());
+    ClothSpec loose = small(at(0, 0.23, 0));
+    loose.m_springs = false;
+    btSoftBody& cloth = world.addCloth(loose);
+    const auto put = [&](const btVector3& place)
+    {
+        for (const int node : {40, 41})
+        {
+            cloth.m_nodes[node].m_x = cloth.m_nodes[node].m_q = place;
+            cloth.m_nodes[node].m_v.setZero();
+        }
+    };
+    const auto expectReport = [&](std::size_t nodes)
+    {
+        world.step();
+        EXPECT_EQ(plugin.statistics().m_invalidNodes, nodes);
+        EXPECT_EQ(plugin.statistics().m_status, std::uint32_t(nodes > 0 ? kStepInvalidNodes : kStepGood));
+    };
+    world.step(10);
+    put(btVector3(nan, nan, nan));
+    expectReport(2);
+    ASSERT_FALSE(plugin.statistics().m_skipped);
+    world.remove(box);
+    expectReport(2);
+    ASSERT_TRUE(plugin.statistics().m_skipped) << "no pair is left";
+    expectReport(2);
+    put(at(0, 0.5, 0));
+    expectReport(0);
+    // Only cloth that had a pair is examined.
+    put(btVector3(nan, nan, nan));
+    expectReport(0);
+}
+
 namespace
 {
 double fastestOf(const btSoftBody& cloth)

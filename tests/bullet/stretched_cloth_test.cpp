@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -291,4 +293,57 @@ TEST_P(StretchedCloth, ClothThatHangsOnARespawnedBodyComesBack)
 }
 
 INSTANTIATE_TEST_SUITE_P(Backends, StretchedCloth, testing::ValuesIn(allBackends()), backendName);
+
+namespace
+{
+// A triangle with sides of 3, 4 and 5 m, and a node far away. No link joins the nodes.
+struct LooseTriangle
+{
+    LooseTriangle() : m_body(&m_info, 4, m_places, m_masses)
+    {
+        m_nodes.resize(4);
+        for (std::size_t i = 0; i < 4; ++i)
+            recordPath(m_body.m_nodes[int(i)], i, m_nodes);
+    }
+
+    const btVector3 m_places[4] = {{0, 0, 0}, {3, 0, 0}, {0, 4, 0}, {1000, 0, 0}};
+    const btScalar m_masses[4] = {1, 1, 1, 1};
+    btSoftBodyWorldInfo m_info;
+    btSoftBody m_body;
+    SolverNodes m_nodes;
+};
+}  // namespace
+
+TEST(Stretch, ABodyWithoutLinksIsMeasuredByTheLongestEdgeOfItsFaces)
+{
+    // The edges of the second face lead to nodes that the body does not have.
+    for (const std::vector<std::int32_t>& corners :
+         {std::vector<std::int32_t>{0, 1, 2, 3, -1, 4}, {1, 2, 0, -1, 4, 3}, {2, 0, 1, 4, 3, -1}})
+    {
+        SCOPED_TRACE(corners[0]);
+        LooseTriangle triangle;
+        const ClothFaces faces(corners, 4);
+        EXPECT_EQ(unitOf(triangle.m_body, faces, triangle.m_nodes), 5);
+        for (int i = 0; i < 4; ++i)
+            triangle.m_body.m_nodes[i].m_x *= 3;
+        const Stretch stretch = stretchOf(triangle.m_body, faces, triangle.m_nodes);
+        EXPECT_EQ(stretch.m_start, 1);
+        EXPECT_EQ(stretch.m_end, 3);
+        for (int bad = 0; bad < 3; ++bad)
+        {
+            const btScalar before = triangle.m_body.m_nodes[bad].m_x.y();
+            triangle.m_body.m_nodes[bad].m_x.setY(std::numeric_limits<btScalar>::quiet_NaN());
+            EXPECT_GT(stretchOf(triangle.m_body, faces, triangle.m_nodes).m_end, 1e18f) << bad;
+            triangle.m_body.m_nodes[bad].m_x.setY(before);
+        }
+    }
+}
+
+TEST(Stretch, ABodyWithoutLinksAndFacesHasItsOwnSize)
+{
+    const LooseTriangle triangle;
+    const Stretch stretch = stretchOf(triangle.m_body, ClothFaces({}, 4), triangle.m_nodes);
+    EXPECT_EQ(stretch.m_start, 1);
+    EXPECT_EQ(stretch.m_end, 1);
+}
 }  // namespace drape::test

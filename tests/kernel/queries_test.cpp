@@ -219,6 +219,26 @@ TEST_P(SelfCollisionTest, SmallBatchesFindTheSame)
     }
 }
 
+// The root has more children than the traversal's stack has room for. The device stays usable.
+TEST_P(SelfCollisionTest, ATreeTooDeepForTheStackIsRefused)
+{
+    const TriangleMesh sphere = makeSphere(0.5f, 2);
+    QueryMesh mesh = makeQueryMesh(describeMesh(sphere), sphere.m_positions.data());
+    QueryDevice device(openDevice(GetParam()), GetParam().m_settings);
+    SelfCollisions found;
+    BvhNode& root = mesh.m_nodes[mesh.m_layout.root()];
+    const BvhNode good = root;
+    root.m_first = 0;
+    root.m_count = DRAPE_STACK_DEPTH + 1;
+    EXPECT_FALSE(device.meshMotion(mesh, defaultCcdSettings(), SelfLimits(), found));
+    EXPECT_EQ(device.error().text(),
+              "traversal on " + device.device().info().m_name + "\nthe hierarchy is too deep for its stack");
+    EXPECT_FALSE(device.device().failed());
+    root = good;
+    EXPECT_TRUE(device.meshMotion(mesh, defaultCcdSettings(), SelfLimits(), found)) << device.error().text();
+    EXPECT_GT(found.m_trianglePairs, 0u);
+}
+
 // Limits that are reached in the first batch, in a later one, or met just so, give what the host gives.
 TEST_P(SelfCollisionTest, LimitsInAnyBatchAreTheHosts)
 {

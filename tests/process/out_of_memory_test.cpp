@@ -8,6 +8,7 @@
 
 #include <drape/queries.h>
 
+#include "bullet_plugin/core/public_call.h"
 #include "scenes/describe_mesh.h"
 #include "scenes/shapes.h"
 #include "tests/bullet/drop_world.h"
@@ -248,6 +249,24 @@ TEST(OutOfMemory, AnswersSaySo)
                               });
             scene.step(2);
             scene.expectGood();
+        });
+}
+
+TEST(OutOfMemory, AnErrorWithoutRoomForItsTextSaysSo)
+{
+    inOwnProcess(
+        []
+        {
+            const char* const call = "the name of a function that is too long for a string without allocation";
+            for (const char* const reason : {"short", call})
+            {
+                Error error;
+                EXPECT_TRUE(withFailing(0, Which::AllFromThere,
+                                        [&] {
+                                            setError(error, call, CaughtException{false, reason});
+                                        }));
+                EXPECT_EQ(error.text(), "out of memory");
+            }
         });
 }
 
