@@ -69,7 +69,7 @@ private:
     struct Kept
     {
         KeptId m_id = 0;
-        const btSoftBodySolver* m_solver = nullptr;  // that made the last step; compared, not followed
+        const btSoftBodySolver* m_solver = nullptr;  // the last step's; compared, not followed
         std::size_t m_count = 0;                     // nodes
         std::uint64_t m_revision = 0;                // the stage's
         bool m_isAway = false;
