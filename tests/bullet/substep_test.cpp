@@ -326,7 +326,7 @@ TEST(Substeps, AStepLeftToBulletCountsAsItsOwn)
     {
         predict();
         EXPECT_TRUE(substeps.canSolveNow(cloth, nullptr));
-        substeps.begin(cloth, nullptr, nullptr);
+        substeps.begin(cloth, nullptr, nullptr, nullptr);
         return substeps.substeps().correctionTime();
     };
     EXPECT_LT(correctionTime(), float(kDt));
