@@ -218,6 +218,34 @@ TEST_P(DeviceSolverTest, TheHostSolvesWhatTheDeviceCannot)
     EXPECT_EQ(expectSame({addBoth}), std::size_t(kSteps));
 }
 
+// The device has the data of one solver's cloths at a time.
+TEST_P(DeviceSolverTest, TwoWorldsShareADevice)
+{
+    const auto runBoth = [](Settings settings, SolverPlace place)
+    {
+        settings.m_solver = Solver::Drape;
+        settings.m_solverPlace = place;
+        Plugin plugin(settings);
+        MeshShape shape(makeSphere(0.4f, 3));
+        DropWorld small(&plugin), large(&plugin);
+        std::vector<btSoftBody*> cloths;
+        clothsOf(1, 9, 1)(small, cloths);
+        clothsOf(3, 17, 1)(large, cloths);
+        std::uint64_t hash = kHashStart;
+        for (DropWorld* world : {&small, &large})
+            world->addKinematic(shape.shape());
+        for (int step = 0; step < kSteps; ++step)
+        {
+            small.step();
+            large.step();
+        }
+        for (const btSoftBody* cloth : cloths)
+            hash = hashOf(*cloth, hash);
+        return hash;
+    };
+    EXPECT_EQ(runBoth(hostSettings(), SolverPlace::Host), runBoth(GetParam().m_settings, SolverPlace::Device));
+}
+
 INSTANTIATE_TEST_SUITE_P(Devices, DeviceSolverTest, testing::ValuesIn(openClBackends()), backendName);
 }  // namespace
 }  // namespace drape::test

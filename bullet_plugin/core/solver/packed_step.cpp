@@ -211,10 +211,10 @@ void PackedStep::pack(const std::vector<SolverCloth>& cloths, const ContactSourc
 {
     m_cloths = cloths;
     const MeshPool* const meshes = source.pipeline() ? &source.pipeline()->cloths() : nullptr;
-    if (m_stageRevision != stage.revision()) m_topology.forget();
-    m_stageRevision = stage.revision();
-    m_step.m_topology = m_topology.pack(cloths, meshes) ? m_topology.words().data() : nullptr;
+    m_topology.pack(cloths, meshes);
+    m_step.m_topology = m_topology.words().data();
     m_step.m_topologyWords = m_topology.words().size();
+    m_step.m_topologyRevision = m_topology.revision();
     m_topology.describe(m_step.m_layout);
     m_clothRecords.clear();
     m_surfaces.clear();

@@ -39,7 +39,6 @@ private:
 
     std::vector<SolverCloth> m_cloths;
     PackedTopology m_topology;
-    std::uint64_t m_stageRevision = 0;
     SolveStep m_step;
     std::vector<SolveCloth> m_clothRecords;
     std::vector<SolveSurface> m_surfaces;

@@ -45,12 +45,12 @@ PackedTopology::Key PackedTopology::keyOf(const SolverCloth& cloth, const MeshPo
     return key;
 }
 
-bool PackedTopology::pack(const std::vector<SolverCloth>& cloths, const MeshPool* meshes)
+void PackedTopology::pack(const std::vector<SolverCloth>& cloths, const MeshPool* meshes)
 {
     std::vector<Key> keys;
     for (const SolverCloth& cloth : cloths)
         keys.push_back(keyOf(cloth, meshes));
-    if (keys == m_keys) return false;
+    if (keys == m_keys) return;
     m_keys.clear();
     m_cloths.clear();
     m_links.clear();
@@ -67,7 +67,7 @@ bool PackedTopology::pack(const std::vector<SolverCloth>& cloths, const MeshPool
     listGroups(cloths);
     layOut();
     m_keys = std::move(keys);
-    return true;
+    m_revision = newRevision();
 }
 
 void PackedTopology::packCloth(const SolverCloth& cloth, const MeshPool* meshes)

@@ -10,6 +10,7 @@
 
 #include "kernels/shared/solve_step.h"
 #include "link_sweep.h"
+#include "revision.h"
 #include "solver_cloth.h"
 
 namespace drape
@@ -27,10 +28,9 @@ public:
     };
 
     // Packs the cloths unless they are what was packed last. meshes: the pipeline's cloths; null without contacts.
-    // Returns whether the packed data is new.
-    bool pack(const std::vector<SolverCloth>& cloths, const MeshPool* meshes);
-    // Requests that the next pack() packs.
-    void forget() { m_keys.clear(); }
+    void pack(const std::vector<SolverCloth>& cloths, const MeshPool* meshes);
+    // Differs from that of all other packed data.
+    std::uint64_t revision() const { return m_revision; }
 
     // Sets the layout's numbers and its places in the topology.
     void describe(SolveLayout& layout) const { layout = m_layout; }
@@ -72,6 +72,7 @@ private:
     void layOut();
 
     std::vector<Key> m_keys;
+    std::uint64_t m_revision = 0;
     std::vector<Cloth> m_cloths;
     std::vector<SolveLink> m_links;
     std::vector<SolveBatch> m_linkBatches;

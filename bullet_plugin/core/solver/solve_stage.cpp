@@ -37,10 +37,11 @@ void SolveStage::upload(const SolveStep& step)
     Device& device = *m_device;
     m_input.reserve(device, step.m_inputWords);
     m_input.write(device, step.m_input, step.m_inputWords);
-    if (step.m_topology)
+    if (m_topologyRevision != step.m_topologyRevision)
     {
         m_topology.reserve(device, step.m_topologyWords);
         m_topology.write(device, step.m_topology, step.m_topologyWords);
+        m_topologyRevision = step.m_topologyRevision;
     }
     if (!isOnDevice()) uploadContacts(step.m_contacts);
     if (m_work.capacity() < step.m_workWords) m_work.reserve(device, step.m_workWords + step.m_workWords / 4);

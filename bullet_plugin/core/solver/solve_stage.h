@@ -25,9 +25,9 @@ struct SolveStep
     SolveLayout m_layout = {};
     const SolveInputWord* m_input = nullptr;
     std::size_t m_inputWords = 0;
-    // Null: the topology of the last step.
     const SolveTopologyWord* m_topology = nullptr;
     std::size_t m_topologyWords = 0;
+    std::uint64_t m_topologyRevision = 0;  // uploaded where it is not that of the last step
     ContactList m_contacts;
     DeviceContacts m_onDevice;  // instead of them, unless its list is null
     std::size_t m_clothCount = 0;
@@ -50,7 +50,7 @@ public:
     void create(Device& device, const ProgramLoader& load);
     // Returns whether create() was called.
     bool created() const { return m_device != nullptr; }
-    // Differs from that of every stage before and after in which the last step's topology is lost.
+    // Differs from that of every stage before and after, whose nodes are lost.
     std::uint64_t revision() const { return m_revision; }
 
     // Nodes that stay on the device from step to step.
@@ -106,6 +106,7 @@ private:
     BoundKernel<kernels::passNodes> m_passNodes;
     Buffer<SolveInputWord> m_input{"solver input"};
     Buffer<SolveTopologyWord> m_topology{"solver topology"};
+    std::uint64_t m_topologyRevision = 0;  // several solvers share the stage
     Buffer<Contact> m_contacts{"solver contacts"};
     Buffer<SolveWorkWord> m_work{"solver memory"};
     std::unique_ptr<Staging<SolveInputWord>> m_inputWritten = std::make_unique<Staging<SolveInputWord>>();
