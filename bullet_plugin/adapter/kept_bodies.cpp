@@ -425,9 +425,9 @@ void KeptBodies::store(btSoftBody& body, Kept& kept)
         kept.m_pins.push_back(static_cast<int>(i));
         kept.m_pinnedAt.push_back(node.m_x);
     }
-    stage()->kept().write(kept.m_id, nodes);
     kept.m_step = stepOver(body, kept.m_id);
     kept.m_stored = boxesAround(body, kept.m_step);
+    stage()->kept().write(kept.m_id, nodes, kept.m_stored);
     kept.m_isStored = true;
     kept.m_isAway = true;
 }

@@ -67,10 +67,10 @@ void KeptNodes::remove(KeptId id)
     m_slots[id].m_isUsed = false;
 }
 
-void KeptNodes::write(KeptId id, const std::vector<KeptNode>& nodes)
+void KeptNodes::write(KeptId id, const std::vector<KeptNode>& nodes, const KeptBoxes& boxes)
 {
     Slot& slot = m_slots[id];
-    slot.m_boxes.m_areFinite = false;
+    slot.m_boxes = boxes;
     if (slot.m_waitsAtWrite == m_device->waits()) m_device->wait();
     slot.m_waitsAtWrite = m_device->waits();
     KeptNode* const sent = m_written->data() + slot.m_first;

@@ -26,7 +26,7 @@ public:
     void remove(KeptId id);
     std::size_t count(KeptId id) const { return m_slots[id].m_count; }
     // Replaces the nodes. Returns after enqueueing; waits if there was no wait since the cloth's last call.
-    void write(KeptId id, const std::vector<KeptNode>& nodes);
+    void write(KeptId id, const std::vector<KeptNode>& nodes, const KeptBoxes& boxes);
     // Enqueues the transfer of the nodes to the host; they are at nodesRead() after a wait for the device. Allocates no
     // memory.
     void beginRead(KeptId id);
@@ -46,7 +46,7 @@ public:
     bool isGood(std::size_t place) const;
     // Accepts that result.
     void accept(KeptId id, std::size_t place);
-    // Returns the boxes after the last accepted step of the cloth.
+    // Returns the boxes after the last accepted step of the cloth, or those of write().
     const KeptBoxes& boxes(KeptId id) const { return m_slots[id].m_boxes; }
 
 private:
