@@ -49,9 +49,6 @@ public:
         return !m_found;
     }
 
-    bool m_found = false;
-
-private:
     bool isStock(const btCollisionObject& object) const
     {
         if (!respond(m_body, object) || !m_body.checkCollideWith(&object) || !object.checkCollideWith(&m_body))
@@ -62,6 +59,10 @@ private:
             return reachesBelow(m_body, object, static_cast<const btStaticPlaneShape&>(shape));
         return !handlesAll(object, shape);
     }
+
+    bool m_found = false;
+
+private:
     bool handlesAll(const btCollisionObject& object, const btCollisionShape& shape) const
     {
         if (!shape.isCompound()) return !reasonForStock(m_state, m_body, object, shape);
@@ -241,6 +242,7 @@ void KeptBodies::release(btSoftBody& body)
 {
     Kept* const kept = find(body);
     if (!kept) return;
+    kept->m_isReading = false;  // a transfer of an earlier step's nodes
     fetch(body);
     freeRoom(*kept);
     m_bodies.erase(&body);
@@ -358,6 +360,11 @@ bool KeptBodies::begin(btSoftBody& body, btScalar dt)
     return true;
 }
 
+bool KeptBodies::isRead(const btSoftBody& body, const btCollisionObject& object) const
+{
+    return FindStock(m_state, body).isStock(object);
+}
+
 const KeptStep* KeptBodies::stepOf(const btSoftBody& body) const
 {
     const Kept* const kept = find(body);
@@ -366,8 +373,7 @@ const KeptStep* KeptBodies::stepOf(const btSoftBody& body) const
 
 const KeptBoxes& KeptBodies::boxesOf(const btSoftBody& body) const
 {
-    const Kept& kept = *find(body);
-    return kept.m_isStored ? kept.m_stored : stage()->kept().boxes(kept.m_id);
+    return stage()->kept().boxes(find(body)->m_id);
 }
 
 void KeptBodies::callHome(const btSoftBody& body)
@@ -394,10 +400,12 @@ void KeptBodies::comeHome(btSoftBody& body)
         const bool isMoved = isPin && node.m_x != kept.m_pinnedAt[pin];
         if (isPin) ++pin;
         node.m_q = vectorOf(nodes[i].m_position);
+        node.m_f.setZero();  // the app added these while the body was away
         if (isMoved) continue;
         node.m_x = node.m_q;
         node.m_v = vectorOf(nodes[i].m_velocity);
     }
+    if (!isPlain(body)) body.updateNormals();  // for Bullet's prediction
 }
 
 bool KeptBodies::hadPair(const btSoftBody& body) const
@@ -426,9 +434,7 @@ void KeptBodies::store(btSoftBody& body, Kept& kept)
         kept.m_pinnedAt.push_back(node.m_x);
     }
     kept.m_step = stepOver(body, kept.m_id);
-    kept.m_stored = boxesAround(body, kept.m_step);
-    stage()->kept().write(kept.m_id, nodes, kept.m_stored);
-    kept.m_isStored = true;
+    stage()->kept().write(kept.m_id, nodes, boxesAround(body, kept.m_step));
     kept.m_isAway = true;
 }
 
@@ -444,10 +450,8 @@ void KeptBodies::endStep(btSoftBody& body, const btSoftBodySolver* bulletSolver,
     }
     kept->m_solver = bulletSolver;
     kept->m_hadPair = hasPair;
-    if (kept->m_isAway)
-        kept->m_isStored = false;         // the boxes are the device's now
-    else if (hasPair || anyPinned(body))  // a free body would come home in the next step
-        store(body, *kept);
+    // A free body would come home in the next step.
+    if (!kept->m_isAway && (hasPair || anyPinned(body))) store(body, *kept);
     kept->m_isBegun = false;
 }
 }  // namespace drape

@@ -52,6 +52,8 @@ public:
     bool hasPins(const btSoftBody& body) const;
     // Begins a step of dt seconds of a body that is away. Returns false if it must come home first.
     bool begin(btSoftBody& body, btScalar dt);
+    // Returns whether Bullet's own algorithm may find contacts of the body with the object.
+    bool isRead(const btSoftBody& body, const btCollisionObject& object) const;
     // Returns the step that was begun; null for a body that is at home.
     const KeptStep* stepOf(const btSoftBody& body) const;
     // Returns the boxes of that step.
@@ -76,8 +78,6 @@ private:
         bool m_isBegun = false;  // m_step is the running step
         bool m_hadPair = false;
         KeptStep m_step;
-        KeptBoxes m_stored;  // boxes of nodes that were stored
-        bool m_isStored = false;
         std::vector<int> m_pins;
         std::vector<btVector3> m_pinnedAt;
         bool m_isReading = false;  // a transfer was begun

@@ -134,13 +134,13 @@ MeshId ClothMirror::addCopy(Pipeline& pipeline) const
     return pipeline.addCloth(mesh);
 }
 
-void ClothMirror::rememberEnds(ThreadTeam& threads)
+void ClothMirror::rememberEnds(ThreadTeam& threads, btVector3 btSoftBody::Node::*where)
 {
     m_ends.resize(static_cast<std::size_t>(m_body->m_nodes.size()));
-    const auto remember = [this](std::size_t job)
+    const auto remember = [this, where](std::size_t job)
     {
         for (std::size_t i = job * kNodesPerJob; i < std::min(m_ends.size(), (job + 1) * kNodesPerJob); ++i)
-            m_ends[i] = m_body->m_nodes[static_cast<int>(i)].m_x;
+            m_ends[i] = m_body->m_nodes[static_cast<int>(i)].*where;
     };
     const std::size_t jobs = (m_ends.size() + kNodesPerJob - 1) / kNodesPerJob;
     runShared(threads, jobs > 1, jobs, remember);

@@ -79,8 +79,8 @@ public:
     void startAnew() { ++m_startRevision; }
     // Counts up with each startAnew().
     std::uint64_t startRevision() const { return m_startRevision; }
-    // Records the nodes' positions at a step's end.
-    void rememberEnds(ThreadTeam& threads);
+    // Records the nodes' positions at a step's end: m_x after it, m_q for nodes that came home since.
+    void rememberEnds(ThreadTeam& threads, btVector3 btSoftBody::Node::*where = &btSoftBody::Node::m_x);
     // Lists the nodes whose step starts (m_q) away from the last recorded end; all nodes if no end was recorded.
     void listJumped(ThreadTeam& threads, std::vector<int>& nodes) const;
     // Returns whether, before a step's motion is predicted, a node was moved from its position after the last step as

@@ -407,7 +407,7 @@ void PluginState::bringHome(btSoftBody& body)
 {
     m_kept.comeHome(body);
     ClothMirror* const mirror = findCloth(&body);
-    if (mirror && m_kept.hadPair(body)) mirror->rememberEnds(threads());
+    if (mirror && m_kept.hadPair(body)) mirror->rememberEnds(threads(), &btSoftBody::Node::m_q);
 }
 
 void PluginState::teleported(const btCollisionObject* object)

@@ -370,18 +370,25 @@ void SoftBodySolver::forgetRemoved()
 // handle.
 void SoftBodySolver::leaveToBullet()
 {
+    std::vector<unsigned char> leaving(static_cast<std::size_t>(m_softBodySet.size()));
     const auto sizeOf = [this](std::size_t i)
     {
         const btSoftBody& body = *m_softBodySet[int(i)];
         return m_work->substepsOf(body) ? static_cast<std::size_t>(body.m_nodes.size()) : 0;
     };
-    const auto check = [this](std::size_t i, ThreadTeam* threads)
+    const auto check = [&](std::size_t i, ThreadTeam* threads)
     {
-        btSoftBody& body = *m_softBodySet[int(i)];
-        SubstepBody& substeps = *m_work->substepsOf(body);
-        if (!substeps.canSolveNow(body, threads)) substeps.leave(body);
+        const btSoftBody& body = *m_softBodySet[int(i)];
+        leaving[i] = !m_work->substepsOf(body)->canSolveNow(body, threads);
     };
-    forBodies(static_cast<std::size_t>(m_softBodySet.size()), m_state->threads(), sizeOf, check);
+    forBodies(leaving.size(), m_state->threads(), sizeOf, check);
+    for (std::size_t i = 0; i < leaving.size(); ++i)
+    {
+        if (!leaving[i]) continue;
+        btSoftBody& body = *m_softBodySet[int(i)];
+        if (m_state->m_kept.stepOf(body)) m_work->bringHome(body);
+        m_work->substepsOf(body)->leave(body);
+    }
 }
 
 // Lists the bodies that Drape takes.
@@ -720,7 +727,9 @@ void SoftBodySolver::endFailedStep()
     for (int i = 0; i < m_softBodySet.size(); ++i)
     {
         btSoftBody& body = *m_softBodySet[i];
-        if (work.isSolved(i) || !work.isSteppedBody(body)) continue;
+        const SubstepBody* const substeps = work.substepsAt(body);
+        const bool isAway = substeps && substeps->isAway();  // its nodes are those of the last step's end
+        if (work.isSolved(i) || !work.isSteppedBody(body) || isAway) continue;
         if (handlesSteppedCloth(*m_state, body))
         {
             const BodyContacts* const contacts = work.m_detected ? work.contactsOf(body) : nullptr;
@@ -749,17 +758,28 @@ void SoftBodySolver::solveConstraints(btScalar dt)
     if (m_work->m_failures != m_state->failures()) endFailedStep();
 }
 
-// Brings the node trees up to date that Bullet's collision of the pair reads.
+// Prepares a body for Bullet's collision with an object, which reads the nodes and their tree. The object may have
+// moved since the step began.
+void SoftBodySolver::readByBullet(btSoftBody& body, const btCollisionObject& object)
+{
+    if (!m_work) return;
+    const auto failed = [&](const CaughtException& caught)
+    { m_state->fail("drape::SoftBodySolver::processCollision", caught); };
+    if (m_state->m_kept.stepOf(body) && m_state->m_kept.isRead(body, object))
+        guarded([&] { m_work->bringHome(body); }, failed);
+    m_state->updateNodeTree(body);
+}
+
 void SoftBodySolver::processCollision(btSoftBody* body, const btCollisionObjectWrapper* obstacle)
 {
-    if (m_work) m_state->updateNodeTree(*body);
+    readByBullet(*body, *obstacle->getCollisionObject());
     btDefaultSoftBodySolver::processCollision(body, obstacle);
 }
 
 void SoftBodySolver::processCollision(btSoftBody* body, btSoftBody* other)
 {
-    if (m_work) m_state->updateNodeTree(*body);
-    if (m_work) m_state->updateNodeTree(*other);
+    readByBullet(*body, *other);
+    readByBullet(*other, *body);
     btDefaultSoftBodySolver::processCollision(body, other);
 }
 

@@ -43,6 +43,8 @@ public:
     void afterPrediction(btSoftBody& body, ThreadTeam* threads);
     // Begins a step whose nodes the device predicts (kept_bodies.h).
     void predictAway() { m_isPredicted = m_isAway = true; }
+    // Returns whether the step has begun so, and the nodes have not come since.
+    bool isAway() const { return m_isAway; }
     // Returns how far the end of a free path in substeps lies from Bullet's prediction, per unit of acceleration, s².
     static btScalar pathShift(const btSoftBody& body);
     // Returns whether the body has the nodes of the prediction.

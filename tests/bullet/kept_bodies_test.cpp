@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <memory>
 
 #include "kernels/lib/vec3.h"
 #include "scenes/shapes.h"
@@ -274,6 +275,138 @@ TEST_P(KeptBodyTest, RemovedBodiesAreForgotten)
         return hash;
     };
     EXPECT_EQ(runWith(false), runWith(true));
+}
+
+// The box is far away when the step begins. The cloth gets its nodes when Bullet's own algorithm reads them.
+TEST_P(KeptBodyTest, ABoxThatAppearsInAStepBringsClothHome)
+{
+    btBoxShape box(btVector3(btScalar(0.1), btScalar(0.1), btScalar(0.1)));
+    btRigidBody* body = nullptr;
+    Scene scene = {clothOf(17), nullptr, nullptr};
+    scene.m_add = [&](DropWorld& world, btSoftBody&)
+    { body = &world.addKinematic(box, btTransform(btQuaternion::getIdentity(), btVector3(5, 0, 0))); };
+    scene.m_beforeStep = [&](btRigidBody&, btSoftBody&, int step)
+    {
+        const btVector3 place = step < 30 ? btVector3(5, 0, 0) : btVector3(0, btScalar(0.42), 0);
+        body->setWorldTransform(btTransform(btQuaternion::getIdentity(), place));
+    };
+    EXPECT_GT(expectSame(scene), kSteps / 4);
+}
+
+// Bullet's prediction reads normals then.
+TEST_P(KeptBodyTest, DragThatBeginsActsAsAtHome)
+{
+    Scene scene = {clothOf(17), nullptr, nullptr};
+    scene.m_beforeStep = [](btRigidBody&, btSoftBody& cloth, int step)
+    { cloth.m_cfg.kDG = btScalar(step == 30 ? 0.1 : 0); };
+    EXPECT_GT(expectSame(scene), kSteps / 4);
+}
+
+// Bullet solves the cloth from then on. The flag has no contacts.
+TEST_P(KeptBodyTest, ALinkToAnotherBodyBringsClothHome)
+{
+    for (const btScalar height : {btScalar(0.45), btScalar(5)})
+    {
+        btSoftBody* other = nullptr;
+        Scene scene = {clothOf(17), nullptr, nullptr};
+        scene.m_cloth.m_centre.setY(height);
+        scene.m_add = [&](DropWorld& world, btSoftBody& cloth)
+        {
+            cloth.setMass(0, 0);
+            ClothSpec spec = clothOf(9);
+            spec.m_centre.setX(3);
+            other = &world.addCloth(spec);
+        };
+        scene.m_beforeStep = [&](btRigidBody&, btSoftBody& cloth, int step)
+        {
+            if (step == 30) cloth.appendLink(&cloth.m_nodes[3], &other->m_nodes[2], cloth.m_materials[0]);
+        };
+        EXPECT_GT(expectSame(scene), kSteps / 4);
+    }
+}
+
+// Jumps are no motion, so that a mesh between start and end counts as a start that intersects.
+TEST_P(KeptBodyTest, PinsJumpAsAtHome)
+{
+    Scene scene = {clothOf(17), nullptr, nullptr};
+    scene.m_add = [](DropWorld&, btSoftBody& cloth) { cloth.setMass(144, 0); };
+    scene.m_beforeStep = [](btRigidBody&, btSoftBody& cloth, int step)
+    {
+        if (step == 30) cloth.m_nodes[144].m_x -= btVector3(0, btScalar(0.2), 0);
+    };
+    EXPECT_GT(expectSame(scene), kSteps / 4);
+}
+
+TEST_P(KeptBodyTest, ForcesOnClothThatIsAwayDoNotCount)
+{
+    Scene scene = {clothOf(17), nullptr, nullptr};
+    scene.m_add = [](DropWorld&, btSoftBody& cloth) { cloth.setMass(0, 0); };
+    const auto withForce = [](btScalar force)
+    {
+        return [force](btRigidBody&, btSoftBody& cloth, int step)
+        {
+            if (step >= 20 && step < 40) cloth.addForce(btVector3(0, force, 0));
+            if (step == 40) cloth.m_nodes[0].m_x += btVector3(0, btScalar(0.01), 0);
+        };
+    };
+    scene.m_beforeStep = withForce(0);
+    const Outcome without = run(scene, GetParam().m_settings, true);
+    scene.m_beforeStep = withForce(1);
+    EXPECT_EQ(run(scene, GetParam().m_settings, true).m_hash, without.m_hash);
+}
+
+// A sphere with a cloth that is kept, after some steps.
+struct KeptCloth17
+{
+    explicit KeptCloth17(Settings settings)
+    {
+        settings.m_solver = Solver::Drape;
+        settings.m_solverPlace = SolverPlace::Device;
+        m_plugin = std::make_unique<Plugin>(settings);
+        m_world = std::make_unique<DropWorld>(m_plugin.get());
+        m_world->addKinematic(m_shape.shape());
+        m_cloth = &m_world->addCloth(clothOf(17));
+        EXPECT_EQ(m_plugin->keepOnDevice(*m_cloth, true), "");
+        m_world->step(40);
+    }
+    std::vector<float> positions()
+    {
+        std::vector<float> result(3 * std::size_t(m_cloth->m_nodes.size()));
+        EXPECT_TRUE(m_plugin->fetch(*m_cloth, {result.data(), nullptr, nullptr}));
+        return result;
+    }
+
+    MeshShape m_shape{makeSphere(0.4f, 3)};
+    std::unique_ptr<Plugin> m_plugin;
+    std::unique_ptr<DropWorld> m_world;
+    btSoftBody* m_cloth = nullptr;
+};
+
+TEST_P(KeptBodyTest, ReleasedClothHasTheLastNodesAfterAnEarlierBeginFetch)
+{
+    KeptCloth17 kept(GetParam().m_settings);
+    kept.m_plugin->beginFetch(*kept.m_cloth);
+    kept.m_world->step(5);
+    const std::vector<float> begun = kept.positions();
+    const std::vector<float> last = kept.positions();
+    EXPECT_NE(begun, last);
+    kept.m_plugin->beginFetch(*kept.m_cloth);
+    kept.m_world->step();
+    kept.m_plugin->keepOnDevice(*kept.m_cloth, false);
+    EXPECT_NE(positionsOf(*kept.m_cloth), last);
+}
+
+// The memory that nodes are read to grows meanwhile.
+TEST_P(KeptBodyTest, ABegunFetchEndsAfterAnotherClothIsKept)
+{
+    KeptCloth17 kept(GetParam().m_settings);
+    const std::vector<float> now = kept.positions();
+    ClothSpec spec = clothOf(40);
+    spec.m_centre.setX(5);
+    btSoftBody& other = kept.m_world->addCloth(spec);
+    kept.m_plugin->beginFetch(*kept.m_cloth);
+    EXPECT_EQ(kept.m_plugin->keepOnDevice(other, true), "");
+    EXPECT_EQ(kept.positions(), now);
 }
 
 TEST_P(KeptBodyTest, AReasonIsGivenWhereNothingIsKept)

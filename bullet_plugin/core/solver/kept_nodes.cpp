@@ -50,7 +50,7 @@ KeptId KeptNodes::add(std::size_t count)
         const std::size_t first = m_slots.empty() ? 0 : m_slots.back().m_first + m_slots.back().m_count;
         m_device->wait();  // for transfers into the memory that grows
         m_nodes.extend(*m_device, 2 * (first + count), 2 * first);
-        m_read->reserve(m_device, first + count);
+        growRead(first + count);
         m_written->reserve(m_device, first + count);
         m_slots.emplace_back();
         m_slots.back().m_first = first;
@@ -60,6 +60,16 @@ KeptId KeptNodes::add(std::size_t count)
     slot->m_isUsed = true;
     slot->m_boxes = KeptBoxes();
     return KeptId(slot - m_slots.begin());
+}
+
+// Keeps nodes that were read: nodesRead() of other cloths may still be due.
+void KeptNodes::growRead(std::size_t count)
+{
+    if (m_read->capacity() >= count) return;
+    auto larger = std::make_unique<Staging<KeptNode>>();
+    larger->reserve(m_device, count);
+    std::copy(m_read->data(), m_read->data() + m_read->capacity(), larger->data());
+    m_read = std::move(larger);
 }
 
 void KeptNodes::remove(KeptId id)

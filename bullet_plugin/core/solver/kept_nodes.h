@@ -25,7 +25,8 @@ public:
     KeptId add(std::size_t count);
     void remove(KeptId id);
     std::size_t count(KeptId id) const { return m_slots[id].m_count; }
-    // Replaces the nodes. Returns after enqueueing; waits if there was no wait since the cloth's last call.
+    // Replaces the nodes, and the boxes around their coming step. Returns after enqueueing; waits if there was no wait
+    // since the cloth's last call.
     void write(KeptId id, const std::vector<KeptNode>& nodes, const KeptBoxes& boxes);
     // Enqueues the transfer of the nodes to the host; they are at nodesRead() after a wait for the device. Allocates no
     // memory.
@@ -46,7 +47,7 @@ public:
     bool isGood(std::size_t place) const;
     // Accepts that result.
     void accept(KeptId id, std::size_t place);
-    // Returns the boxes after the last accepted step of the cloth, or those of write().
+    // Returns the boxes of write(), or those after the last step of the cloth that was accepted since.
     const KeptBoxes& boxes(KeptId id) const { return m_slots[id].m_boxes; }
 
 private:
@@ -65,6 +66,7 @@ private:
         return cl_uint(2 * slot.m_first + turn * slot.m_count);
     }
     std::size_t width(const std::vector<KeptCloth>& cloths);
+    void growRead(std::size_t count);
 
     Device* m_device = nullptr;
     BoundKernel<kernels::predictKept> m_predict;

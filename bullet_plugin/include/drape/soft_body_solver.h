@@ -58,6 +58,7 @@ private:
     void reserveSubsteps();
     void forgetRemoved();
     void leaveToBullet();
+    void readByBullet(btSoftBody& body, const btCollisionObject& object);
     void chooseStage();
     void detect();
     void solveBodies(StepParts& times);
