@@ -191,16 +191,13 @@ void CollisionStep::uploadNodes(Detection detection)
     m_state.pipeline().writeNodes(cloths, write);
 }
 
-// Records the paths again as the detection found them: the solver may have replaced their ends by more precise ones.
-void CollisionStep::recordPaths()
+// Records the body's paths again as the detection found them, at home: the solver may have replaced their ends by more
+// precise ones.
+void CollisionStep::recordPaths(BodyContacts& body)
 {
-    for (BodyContacts& body : m_bodies)
-    {
-        if (body.m_contacts.m_isSolved) continue;
-        bringHome(body);
-        for (std::size_t i = 0; i < body.nodes().count(); ++i)
-            recordPath(body.m_body->m_nodes[static_cast<int>(i)], i, body.nodes());
-    }
+    bringHome(body);
+    for (std::size_t i = 0; i < body.nodes().count(); ++i)
+        recordPath(body.m_body->m_nodes[static_cast<int>(i)], i, body.nodes());
 }
 
 void CollisionStep::bringHome(BodyContacts& body)
@@ -330,11 +327,11 @@ void CollisionStep::addContacts(BodyContacts& body, const Contact* first, std::u
 }
 
 // Returns how many times as many tests as in ordinary motion the cloth may make.
-float CollisionStep::allowanceOf(MeshId cloth) const
+float CollisionStep::allowanceOf(MeshId cloth)
 {
     const std::size_t index = m_byCloth.at(cloth);
-    const BodyContacts& body = m_bodies[index];
-    if (body.m_isAway) return HUGE_VALF;
+    BodyContacts& body = m_bodies[index];
+    if (body.m_isAway) recordPaths(body);
     const Stretch stretch = stretchOf(*body.m_body, m_mirrors[index]->faces(), body.nodes());
     const bool isApart = stretch.m_start > kMostStretch;
     if (!body.m_heldTogether && (isApart || stretch.m_end > kMostStretch)) return 1;
@@ -346,13 +343,17 @@ ContactList CollisionStep::waitForContacts(const TakeSolved& takeSolved)
 {
     Pipeline& pipeline = m_state.pipeline();
     const ContactList contacts = pipeline.finish([this](MeshId cloth) { return allowanceOf(cloth); });
-    if (!pipeline.areContactsOnDevice()) return contacts;
-    if (takeSolved && pipeline.ranOnce() && pipeline.statistics().m_invalidNodes == 0) takeSolved();
+    const bool onDevice = pipeline.areContactsOnDevice();
+    if (!takeSolved && !onDevice) return contacts;
+    const bool isWhole = pipeline.ranOnce() && pipeline.statistics().m_invalidNodes == 0;
+    if (takeSolved && onDevice && isWhole) takeSolved();
     const auto isSolved = [](const BodyContacts& body) { return body.m_contacts.m_isSolved; };
     if (std::all_of(m_bodies.begin(), m_bodies.end(), isSolved)) return contacts;
     for (BodyContacts& body : m_bodies)
+    {
         body.m_meetsSurface = !isSolved(body);
-    recordPaths();
+        if (body.m_meetsSurface) recordPaths(body);
+    }
     return pipeline.bringContacts();
 }
 

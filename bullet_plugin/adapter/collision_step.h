@@ -93,7 +93,7 @@ private:
     void markUnguarded();
     void leaveOut(std::size_t index);
     void uploadNodes(Detection detection);
-    void recordPaths();
+    void recordPaths(BodyContacts& body);
     void namePairs(Detection detection);
     void listJumped();
     void submit(Detection detection, ContactPlace place = ContactPlace::Host);
@@ -101,7 +101,7 @@ private:
     bool isDetected(const BodyContacts& body, Detection detection) const;
     void receiveAll(Detection detection, const TakeSolved& takeSolved = nullptr);
     void receiveHeld(Detection detection, const TakeSolved& takeSolved = nullptr);
-    float allowanceOf(MeshId cloth) const;
+    float allowanceOf(MeshId cloth);
     void receive(const ContactList& contacts, Detection detection);
     std::vector<SolverContact> impactsOf(const BodyContacts& body) const;
     void reportPassed();

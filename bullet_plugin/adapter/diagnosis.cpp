@@ -74,7 +74,12 @@ public:
         addSetup();
         const btCollisionObjectArray& objects = m_world.getCollisionObjectArray();
         for (int i = 0; i < objects.size(); ++i)
-            if (const btSoftBody* cloth = btSoftBody::upcast(objects[i])) addCloth(*cloth);
+        {
+            btSoftBody* const cloth = btSoftBody::upcast(objects[i]);
+            if (!cloth) continue;
+            m_plugin.state()->m_kept.fetch(*cloth);
+            addCloth(*cloth);
+        }
         const std::string status = statusText(m_plugin.statistics().m_status);
         if (!status.empty()) add("the last step: " + status);
         return m_text;

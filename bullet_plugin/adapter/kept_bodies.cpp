@@ -8,6 +8,7 @@
 #include "BulletCollision/CollisionShapes/btCompoundShape.h"
 #include "BulletCollision/CollisionShapes/btStaticPlaneShape.h"
 #include "bullet_plugin/adapter/eligibility.h"
+#include "bullet_plugin/adapter/solid_links.h"
 #include "bullet_plugin/adapter/plugin_state.h"
 #include "bullet_plugin/adapter/prediction.h"
 #include "bullet_plugin/adapter/substep_body.h"
@@ -136,13 +137,14 @@ void writeNormals(const btSoftBody& body, const KeptNode* nodes, float* normals)
     std::vector<btVector3> sums(count, btVector3(0, 0, 0));
     for (int f = 0; f < body.m_faces.size(); ++f)
     {
-        std::ptrdiff_t at[3];
+        int at[3];
         for (int k = 0; k < 3; ++k)
-            at[k] = body.m_faces[f].m_n[k] - &body.m_nodes[0];
+            at[k] = nodeIndex(body, body.m_faces[f].m_n[k]);
+        if (std::count(at, at + 3, kForeign) > 0) continue;  // a node of another body
         const btVector3 first = vectorOf(nodes[at[0]].m_position);
         const btVector3 normal =
             (vectorOf(nodes[at[1]].m_position) - first).cross(vectorOf(nodes[at[2]].m_position) - first);
-        for (const std::ptrdiff_t node : at)
+        for (const int node : at)
             sums[static_cast<std::size_t>(node)] += normal;
     }
     for (std::size_t i = 0; i < count; ++i)
@@ -343,7 +345,8 @@ bool KeptBodies::begin(btSoftBody& body, btScalar dt)
 {
     Kept& kept = *find(body);
     kept.m_isBegun = false;
-    if (kept.m_count != static_cast<std::size_t>(body.m_nodes.size())) return false;
+    if (m_isRetired || kept.m_count != static_cast<std::size_t>(body.m_nodes.size())) return false;
+    if (kept.m_faces != body.m_faces.size() || kept.m_links != body.m_links.size()) return false;
     if (!isPlain(body, dt) || body.m_anchors.size() > 0 || anyPinMoved(body, kept)) return false;
     beginPlain(body, dt);
     const KeptStep step = stepOver(body, kept.m_id);
@@ -433,6 +436,8 @@ void KeptBodies::store(btSoftBody& body, Kept& kept)
         kept.m_pins.push_back(static_cast<int>(i));
         kept.m_pinnedAt.push_back(node.m_x);
     }
+    kept.m_faces = body.m_faces.size();
+    kept.m_links = body.m_links.size();
     kept.m_step = stepOver(body, kept.m_id);
     stage()->kept().write(kept.m_id, nodes, boxesAround(body, kept.m_step));
     kept.m_isAway = true;
@@ -451,7 +456,7 @@ void KeptBodies::endStep(btSoftBody& body, const btSoftBodySolver* bulletSolver,
     kept->m_solver = bulletSolver;
     kept->m_hadPair = hasPair;
     // A free body would come home in the next step.
-    if (!kept->m_isAway && (hasPair || anyPinned(body))) store(body, *kept);
+    if (!m_isRetired && !kept->m_isAway && (hasPair || anyPinned(body))) store(body, *kept);
     kept->m_isBegun = false;
 }
 }  // namespace drape

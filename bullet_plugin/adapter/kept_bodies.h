@@ -39,6 +39,8 @@ public:
     // body was away.
     bool fetch(btSoftBody& body);
     bool fetch(const btSoftBody& body, const NodeArrays& arrays);
+    // Brings bodies home in their next step, and keeps them no more: nobody is left to fetch them.
+    void retire() { m_isRetired = true; }
     // Gives all bodies their nodes as far as possible, and keeps none. Throws nothing.
     void abandon() noexcept;
 
@@ -73,6 +75,7 @@ private:
         KeptId m_id = 0;
         const btSoftBodySolver* m_solver = nullptr;  // the last step's; compared, not followed
         std::size_t m_count = 0;                     // nodes
+        int m_faces = 0, m_links = 0;                // numbers when the nodes were stored
         std::uint64_t m_revision = 0;                // the stage's
         bool m_isAway = false;
         bool m_isBegun = false;  // m_step is the running step
@@ -95,6 +98,7 @@ private:
     bool anyPinMoved(const btSoftBody& body, const Kept& kept) const;
 
     PluginState& m_state;
+    bool m_isRetired = false;
     std::unordered_map<const btSoftBody*, Kept> m_bodies;
 };
 }  // namespace drape

@@ -108,6 +108,7 @@ Plugin::Plugin(const Settings& settings)
 Plugin::~Plugin()
 {
     const DefaultFloats floats;
+    if (m_state) m_state->m_kept.retire();
     m_state.reset();
 }
 

@@ -24,6 +24,24 @@ struct Scene
     btScalar m_friction = btScalar(0.5);
 };
 
+// A plugin and a world with a sphere. keeps: cloth may stay on the device of the settings; else the host computes.
+struct SphereWorld
+{
+    SphereWorld(Settings settings, bool keeps) : m_shape(makeSphere(0.4f, 3))
+    {
+        settings.m_solver = Solver::Drape;
+        settings.m_solverPlace = keeps ? SolverPlace::Device : SolverPlace::Host;
+        m_plugin = std::make_unique<Plugin>(settings);
+        m_world = std::make_unique<DropWorld>(m_plugin.get());
+        m_sphere = &m_world->addKinematic(m_shape.shape());
+    }
+
+    MeshShape m_shape;
+    std::unique_ptr<Plugin> m_plugin;
+    std::unique_ptr<DropWorld> m_world;
+    btRigidBody* m_sphere = nullptr;
+};
+
 struct Outcome
 {
     std::uint64_t m_hash = kHashStart;
@@ -41,27 +59,23 @@ std::uint64_t hashOfAll(const btSoftBody& body, std::uint64_t hash)
     return hash;
 }
 
-// fetchEvery: steps between two looks at the nodes.
-Outcome run(const Scene& scene, Settings settings, bool keeps, int fetchEvery = 10)
+// Looks at the nodes in every tenth step.
+Outcome run(const Scene& scene, const Settings& settings, bool keeps)
 {
-    settings.m_solver = Solver::Drape;
-    settings.m_solverPlace = keeps ? SolverPlace::Device : settings.m_solverPlace;
-    Plugin plugin(settings);
-    MeshShape shape(makeSphere(0.4f, 3));
-    DropWorld world(&plugin);
-    btRigidBody& obstacle = world.addKinematic(shape.shape());
-    obstacle.setFriction(scene.m_friction);
-    btSoftBody& cloth = world.addCloth(scene.m_cloth);
-    if (scene.m_add) scene.m_add(world, cloth);
+    SphereWorld all(settings, keeps);
+    Plugin& plugin = *all.m_plugin;
+    all.m_sphere->setFriction(scene.m_friction);
+    btSoftBody& cloth = all.m_world->addCloth(scene.m_cloth);
+    if (scene.m_add) scene.m_add(*all.m_world, cloth);
     Outcome result;
     if (keeps) result.m_reason = plugin.keepOnDevice(cloth, true);
     for (int step = 0; step < kSteps; ++step)
     {
-        if (scene.m_beforeStep) scene.m_beforeStep(obstacle, cloth, step);
-        world.step();
+        if (scene.m_beforeStep) scene.m_beforeStep(*all.m_sphere, cloth, step);
+        all.m_world->step();
         result.m_away += plugin.statistics().m_clothsAway > 0;
         result.m_status |= plugin.statistics().m_status;
-        if (step % fetchEvery != 0 && step != kSteps - 1) continue;
+        if (step % 10 != 0) continue;
         if (keeps) plugin.fetch(cloth);
         result.m_hash = hashOfAll(cloth, result.m_hash);
     }
@@ -73,10 +87,11 @@ Outcome run(const Scene& scene, Settings settings, bool keeps, int fetchEvery = 
 class KeptBodyTest : public BackendTest
 {
 protected:
+    Settings settingsFor(bool keeps) const { return keeps ? GetParam().m_settings : hostSettings(); }
     // Runs the scene with and without keeping the cloth. Returns the steps in which it was away.
     int expectSame(const Scene& scene) const
     {
-        const Outcome home = run(scene, hostSettings(), false), away = run(scene, GetParam().m_settings, true);
+        const Outcome home = run(scene, settingsFor(false), false), away = run(scene, settingsFor(true), true);
         EXPECT_EQ(away.m_reason, "");
         EXPECT_EQ(home.m_hash, away.m_hash);
         EXPECT_EQ(home.m_status, away.m_status);
@@ -174,13 +189,9 @@ TEST_P(KeptBodyTest, ClothStaysAwayOverAPlaneAndBesideAnotherCloth)
 
 TEST_P(KeptBodyTest, ArraysHaveTheNodesOfTheStepThatAskedForThem)
 {
-    Settings settings = GetParam().m_settings;
-    settings.m_solver = Solver::Drape;
-    settings.m_solverPlace = SolverPlace::Device;
-    Plugin plugin(settings);
-    MeshShape shape(makeSphere(0.4f, 3));
-    DropWorld world(&plugin);
-    world.addKinematic(shape.shape());
+    SphereWorld all(GetParam().m_settings, true);
+    Plugin& plugin = *all.m_plugin;
+    DropWorld& world = *all.m_world;
     btSoftBody& cloth = world.addCloth(clothOf(17));
     const std::size_t count = 3 * static_cast<std::size_t>(cloth.m_nodes.size());
     std::vector<float> now(count), later(count), velocities(count), normals(count);
@@ -210,13 +221,9 @@ TEST_P(KeptBodyTest, NodesThatAnAppSetsAreTakenOnRequest)
 {
     const auto runWith = [&](bool keeps)
     {
-        Settings settings = keeps ? GetParam().m_settings : hostSettings();
-        settings.m_solver = Solver::Drape;
-        settings.m_solverPlace = keeps ? SolverPlace::Device : SolverPlace::Host;
-        Plugin plugin(settings);
-        MeshShape shape(makeSphere(0.4f, 3));
-        DropWorld world(&plugin);
-        world.addKinematic(shape.shape());
+        SphereWorld all(settingsFor(keeps), keeps);
+        Plugin& plugin = *all.m_plugin;
+        DropWorld& world = *all.m_world;
         btSoftBody& cloth = world.addCloth(clothOf(17));
         if (keeps) plugin.keepOnDevice(cloth, true);
         for (int step = 0; step < 60; ++step)
@@ -249,18 +256,26 @@ TEST_P(KeptBodyTest, ANodeIsAddedAsAtHome)
     EXPECT_GT(expectSame(scene), kSteps / 4);
 }
 
+// Links and faces of a large cloth are sorted by where its nodes are.
+TEST_P(KeptBodyTest, LinksAndFacesOfALargeClothChangeAsAtHome)
+{
+    Scene scene = {clothOf(60), nullptr, nullptr};
+    scene.m_beforeStep = [](btRigidBody&, btSoftBody& cloth, int step)
+    {
+        if (step == 30) cloth.appendLink(0, 5);
+        if (step == 40) cloth.m_faces.pop_back();
+    };
+    EXPECT_GT(expectSame(scene), kSteps / 4);
+}
+
 // Bodies come and go, and others take their places in the device's memory.
 TEST_P(KeptBodyTest, RemovedBodiesAreForgotten)
 {
     const auto runWith = [&](bool keeps)
     {
-        Settings settings = keeps ? GetParam().m_settings : hostSettings();
-        settings.m_solver = Solver::Drape;
-        settings.m_solverPlace = keeps ? SolverPlace::Device : SolverPlace::Host;
-        Plugin plugin(settings);
-        MeshShape shape(makeSphere(0.4f, 3));
-        DropWorld world(&plugin);
-        world.addKinematic(shape.shape());
+        SphereWorld all(settingsFor(keeps), keeps);
+        Plugin& plugin = *all.m_plugin;
+        DropWorld& world = *all.m_world;
         std::uint64_t hash = kHashStart;
         for (const int nodes : {17, 17, 23, 17, 9})
         {
@@ -355,58 +370,71 @@ TEST_P(KeptBodyTest, ForcesOnClothThatIsAwayDoNotCount)
     EXPECT_EQ(run(scene, GetParam().m_settings, true).m_hash, without.m_hash);
 }
 
-// A sphere with a cloth that is kept, after some steps.
-struct KeptCloth17
+// A cloth that is kept beside the sphere, after some steps.
+struct KeptCloth : SphereWorld
 {
-    explicit KeptCloth17(Settings settings)
+    explicit KeptCloth(const Settings& settings) : SphereWorld(settings, true), m_cloth(m_world->addCloth(clothOf(17)))
     {
-        settings.m_solver = Solver::Drape;
-        settings.m_solverPlace = SolverPlace::Device;
-        m_plugin = std::make_unique<Plugin>(settings);
-        m_world = std::make_unique<DropWorld>(m_plugin.get());
-        m_world->addKinematic(m_shape.shape());
-        m_cloth = &m_world->addCloth(clothOf(17));
-        EXPECT_EQ(m_plugin->keepOnDevice(*m_cloth, true), "");
+        EXPECT_EQ(m_plugin->keepOnDevice(m_cloth, true), "");
         m_world->step(40);
     }
     std::vector<float> positions()
     {
-        std::vector<float> result(3 * std::size_t(m_cloth->m_nodes.size()));
-        EXPECT_TRUE(m_plugin->fetch(*m_cloth, {result.data(), nullptr, nullptr}));
+        std::vector<float> result(3 * std::size_t(m_cloth.m_nodes.size()));
+        EXPECT_TRUE(m_plugin->fetch(m_cloth, {result.data(), nullptr, nullptr}));
         return result;
     }
 
-    MeshShape m_shape{makeSphere(0.4f, 3)};
-    std::unique_ptr<Plugin> m_plugin;
-    std::unique_ptr<DropWorld> m_world;
-    btSoftBody* m_cloth = nullptr;
+    btSoftBody& m_cloth;
 };
 
 TEST_P(KeptBodyTest, ReleasedClothHasTheLastNodesAfterAnEarlierBeginFetch)
 {
-    KeptCloth17 kept(GetParam().m_settings);
-    kept.m_plugin->beginFetch(*kept.m_cloth);
+    KeptCloth kept(GetParam().m_settings);
+    kept.m_plugin->beginFetch(kept.m_cloth);
     kept.m_world->step(5);
     const std::vector<float> begun = kept.positions();
     const std::vector<float> last = kept.positions();
     EXPECT_NE(begun, last);
-    kept.m_plugin->beginFetch(*kept.m_cloth);
+    kept.m_plugin->beginFetch(kept.m_cloth);
     kept.m_world->step();
-    kept.m_plugin->keepOnDevice(*kept.m_cloth, false);
-    EXPECT_NE(positionsOf(*kept.m_cloth), last);
+    kept.m_plugin->keepOnDevice(kept.m_cloth, false);
+    EXPECT_NE(positionsOf(kept.m_cloth), last);
 }
 
 // The memory that nodes are read to grows meanwhile.
 TEST_P(KeptBodyTest, ABegunFetchEndsAfterAnotherClothIsKept)
 {
-    KeptCloth17 kept(GetParam().m_settings);
+    KeptCloth kept(GetParam().m_settings);
     const std::vector<float> now = kept.positions();
     ClothSpec spec = clothOf(40);
     spec.m_centre.setX(5);
     btSoftBody& other = kept.m_world->addCloth(spec);
-    kept.m_plugin->beginFetch(*kept.m_cloth);
+    kept.m_plugin->beginFetch(kept.m_cloth);
     EXPECT_EQ(kept.m_plugin->keepOnDevice(other, true), "");
     EXPECT_EQ(kept.positions(), now);
+}
+
+// The world goes on without the plugin.
+TEST_P(KeptBodyTest, ClothGetsItsNodesOnceThePluginIsDestroyed)
+{
+    KeptCloth kept(GetParam().m_settings);
+    const std::vector<float> before = positionsOf(kept.m_cloth);
+    kept.m_plugin.reset();
+    kept.m_world->step();
+    const std::vector<float> first = positionsOf(kept.m_cloth);
+    EXPECT_NE(first, before);
+    kept.m_world->step();
+    EXPECT_NE(positionsOf(kept.m_cloth), first);
+}
+
+// The check of intersections looks at where the cloth is.
+TEST_P(KeptBodyTest, ADiagnosisLooksAtTheNodesOfNow)
+{
+    KeptCloth kept(GetParam().m_settings);
+    const std::vector<float> now = kept.positions();
+    kept.m_plugin->diagnose(kept.m_world->world());
+    EXPECT_EQ(positionsOf(kept.m_cloth), now);
 }
 
 TEST_P(KeptBodyTest, AReasonIsGivenWhereNothingIsKept)

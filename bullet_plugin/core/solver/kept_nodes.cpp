@@ -43,21 +43,22 @@ void KeptNodes::create(Device& device, const ProgramLoader& load)
 
 KeptId KeptNodes::add(std::size_t count)
 {
-    const auto isFit = [count](const Slot& slot) { return !slot.m_isUsed && slot.m_count == count; };
+    const auto isFit = [count](const Slot& slot) { return !slot.m_isUsed && slot.m_room >= count; };
     auto slot = std::find_if(m_slots.begin(), m_slots.end(), isFit);
     if (slot == m_slots.end())
     {
-        const std::size_t first = m_slots.empty() ? 0 : m_slots.back().m_first + m_slots.back().m_count;
+        const std::size_t first = m_slots.empty() ? 0 : m_slots.back().m_first + m_slots.back().m_room;
         m_device->wait();  // for transfers into the memory that grows
         m_nodes.extend(*m_device, 2 * (first + count), 2 * first);
         growRead(first + count);
         m_written->reserve(m_device, first + count);
         m_slots.emplace_back();
         m_slots.back().m_first = first;
-        m_slots.back().m_count = count;
+        m_slots.back().m_room = count;
         slot = m_slots.end() - 1;
     }
     slot->m_isUsed = true;
+    slot->m_count = count;
     slot->m_boxes = KeptBoxes();
     return KeptId(slot - m_slots.begin());
 }

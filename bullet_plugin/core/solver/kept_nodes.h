@@ -53,8 +53,9 @@ public:
 private:
     struct Slot
     {
-        std::size_t m_first = 0, m_count = 0;  // among the cloths' nodes
-        std::uint32_t m_turn = 0;              // which of two copies is valid
+        std::size_t m_first = 0, m_room = 0;  // among the cloths' nodes
+        std::size_t m_count = 0;              // nodes of the cloth that uses it
+        std::uint32_t m_turn = 0;             // which of two copies is valid
         KeptBoxes m_boxes;
         bool m_isUsed = false;
         std::size_t m_waitsAtWrite = SIZE_MAX;  // waits for the device before the last write()
@@ -63,7 +64,7 @@ private:
     // Each cloth has two copies of its nodes, one behind the other.
     cl_uint placeOf(const Slot& slot, std::uint32_t turn) const
     {
-        return cl_uint(2 * slot.m_first + turn * slot.m_count);
+        return cl_uint(2 * slot.m_first + turn * slot.m_room);
     }
     std::size_t width(const std::vector<KeptCloth>& cloths);
     void growRead(std::size_t count);

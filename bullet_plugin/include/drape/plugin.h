@@ -94,8 +94,8 @@ public:
 
     // Lists problems of a world, one line each; empty if there are none. Checks the world's solver and dispatcher,
     // pairs left to Bullet, cloth that intersects a mesh or lies inside one, nodes that are not finite, margins out of
-    // proportion, and the last step's status. For development: takes milliseconds to seconds. Call between steps. "out
-    // of memory" if memory runs out.
+    // proportion, and the last step's status. Fetches the nodes of kept bodies. For development: takes milliseconds to
+    // seconds. Call between steps. "out of memory" if memory runs out.
     std::string diagnose(const btCollisionWorld& world) const;
 
     // Brings a soft body or an obstacle's meshes to the device, so that the first step near it does not pay for this.
@@ -113,7 +113,8 @@ public:
 
     // Leaves a soft body's nodes on the device from the end of its next step on, so that a step copies none of them.
     // Bullet's nodes then stay as they are until fetch(). What an app sets in them meanwhile does not count, except
-    // positions of pinned nodes. To change the nodes, call fetch(), set them, and call takeNodes().
+    // positions of pinned nodes, and masses from the next step on the host. To change the nodes, call fetch(), set
+    // them, and call takeNodes().
     //
     // A step that needs the nodes on the host brings them there by itself, and computes the same. It does so beside
     // objects whose contacts Bullet's own algorithm finds, at impacts, in free fall, and with moved pins or another
@@ -121,7 +122,8 @@ public:
     //
     // Returns an empty string, or why the body cannot be kept; "out of memory" if memory runs out. The body must stay
     // alive and in its world until `keep` is false, which fetches its nodes. If the device fails, the nodes of the last
-    // fetch() remain.
+    // fetch() remain. If memory runs out in a step, all bodies get their nodes and are kept no more. Once the plugin is
+    // destroyed, bodies get theirs in the next step.
     std::string keepOnDevice(btSoftBody& body, bool keep);
     // Takes a kept body's nodes as Bullet has them: those of the last fetch(), with what the app has changed since.
     void takeNodes(const btSoftBody& body);
