@@ -1,7 +1,7 @@
-// What a SoftBodySolver keeps from step to step, and the parts of a step that go over all bodies.
+// The data that a SoftBodySolver keeps from step to step, and the parts of a step that go over all bodies.
 //
-// soft_body_solver.cpp has the order of a step, solver_begin.cpp its begin with the prediction, and solver_work.cpp what
-// the core's solver takes of the bodies.
+// The order of a step is in soft_body_solver.cpp, its begin with the prediction in solver_begin.cpp. What the core's
+// solver takes of the bodies is in solver_work.cpp.
 #pragma once
 
 #include <algorithm>

@@ -24,7 +24,6 @@ public:
     // Makes room for a cloth of so many nodes.
     KeptId add(std::size_t count);
     void remove(KeptId id);
-    std::size_t count(KeptId id) const { return m_slots[id].m_count; }
     // Replaces the nodes, and the boxes around their coming step. Returns after enqueueing; waits if there was no wait
     // since the cloth's last call.
     void write(KeptId id, const std::vector<KeptNode>& nodes, const KeptBoxes& boxes);
