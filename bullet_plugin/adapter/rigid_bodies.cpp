@@ -20,16 +20,12 @@ RigidBody rigidBodyOf(const btRigidBody* rigid)
     body.m_velocity = vec3Of(rigid->getLinearVelocity());
     body.m_spin = vec3Of(rigid->getAngularVelocity());
     if (rigid->isStaticOrKinematicObject()) return body;
+    body.m_moves = 1;
     body.m_inverseMass = vec3Of(rigid->getLinearFactor() * rigid->getInvMass());
     for (int row = 0; row < 3; ++row)
         body.m_inverseInertia[row] =
             vec3Of(rigid->getInvInertiaTensorWorld().getRow(row) * rigid->getAngularFactor()[row]);
     return body;
-}
-
-Vec3 velocityAt(const RigidBody& body, Vec3 arm)
-{
-    return vec3Add(body.m_velocity, vec3Cross(body.m_spin, arm));
 }
 
 std::uint32_t nodeIndex(const btSoftBody& body, const btSoftBody::Node* node)
@@ -78,7 +74,7 @@ void RigidBodies::addRows(const btSoftBody& body, const SolverNodes& nodes, Rigi
         row.m_body = indexOf(*anchor.m_body);
         row.m_arm = vec3Of(pose.getBasis() * anchor.m_local);
         const Vec3 end = vec3Of(pose * anchor.m_local - vectorOf(nodes.start(row.m_node)));
-        row.m_apart = vec3AddScaled(end, velocityAt(m_bodies[row.m_body], row.m_arm), -dt);
+        row.m_apart = vec3AddScaled(end, rigidVelocity(&m_bodies[row.m_body], row.m_arm), -dt);
         row.m_share = float(visitShare(double(body.m_cfg.kAHR * anchor.m_influence), body.m_cfg.piterations,
                                        SubstepBody::substepsOf(body), 1));
         rows.add(row);
@@ -95,7 +91,7 @@ void RigidBodies::addRows(const btSoftBody& body, const SolverNodes& nodes, Rigi
         plane.m_normal = vec3Of(contact.m_cti.m_normal);
         row.m_arm = vec3Of(contact.m_c1);
         const btVector3 start = vectorOf(nodes.start(row.m_node));
-        const float advance = dt * vec3Dot(plane.m_normal, velocityAt(m_bodies[row.m_body], row.m_arm));
+        const float advance = dt * vec3Dot(plane.m_normal, rigidVelocity(&m_bodies[row.m_body], row.m_arm));
         plane.m_gap = float(contact.m_cti.m_normal.dot(start) + contact.m_cti.m_offset) + advance;
         // Bullet's contacts act on approaching nodes alone. Beside edges of a mesh their normals may lead inwards.
         const bool leaves = vec3Dot(plane.m_normal, nodes.way(row.m_node)) > advance;

@@ -116,7 +116,7 @@ void SoftBodySolver::detect()
     step.begin(m_state->takeNotes(this, work.m_predicted), [&work](btSoftBody& body) { work.bringHome(body); });
     work.bringFreeHome(m_softBodySet);
     work.m_parts.m_mirrorMs += watch.lapMs();
-    const bool follows = work.m_stage && work.mayFollow(m_softBodySet);
+    const bool follows = work.m_stage && work.mayFollow();
     if (!follows) work.bringAllHome(m_softBodySet);
     step.submit(follows ? ContactPlace::Device : ContactPlace::Host);
     const double uploadMs = step.uploadMs();

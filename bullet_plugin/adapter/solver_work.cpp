@@ -57,8 +57,11 @@ void SoftBodySolver::Work::takeSubsteps(const Bodies& bodies)
     m_touched.clear();
     m_free.clear();
     m_ends.clear();
-    m_rigidBodies.clear();
-    if (!m_begun) beginSubsteps(bodies);
+    if (!m_begun)
+    {
+        m_rigidBodies.clear();
+        beginSubsteps(bodies);
+    }
     readPaths(bodies);
     for (int i = 0; i < bodies.size(); ++i)
     {
@@ -91,15 +94,12 @@ void SoftBodySolver::Work::takeForeign(const Bodies& bodies)
 
 // Returns whether the device may solve the step behind the detection, whose contacts then stay there: it is likely to
 // solve all bodies with a pair. A path that meets a surface has to end there before.
-bool SoftBodySolver::Work::mayFollow(const Bodies& bodies) const
+bool SoftBodySolver::Work::mayFollow() const
 {
     if (!m_stage || m_step->neededHost() || !(m_step->hasPairs() || m_state.m_kept.anyBegun())) return false;
     const auto fits = [this](const BodyContacts& body)
     { return substepNodes(*body.m_body) > 0 && !body.m_contacts.m_isFiltered && !body.m_hasDeformedPair; };
-    const auto isRigid = [](const btSoftBody* body)
-    { return body->m_rcontacts.size() > 0 || body->m_anchors.size() > 0; };
-    return std::all_of(m_step->bodies().begin(), m_step->bodies().end(), fits) &&
-           std::none_of(&bodies[0], &bodies[0] + bodies.size(), isRigid);
+    return std::all_of(m_step->bodies().begin(), m_step->bodies().end(), fits);
 }
 
 // Brings bodies home whose step has begun away and for which isNeeded(body) is true, with one wait.

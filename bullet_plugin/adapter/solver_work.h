@@ -74,7 +74,7 @@ struct SoftBodySolver::Work
     void readPaths(const Bodies& bodies);
     void takeSubsteps(const Bodies& bodies);
     void takeForeign(const Bodies& bodies);
-    bool mayFollow(const Bodies& bodies) const;
+    bool mayFollow() const;
     bool submitBehind(const Bodies& bodies, const ContactSource& source);
     bool solveByBullet(const Bodies& bodies);
 

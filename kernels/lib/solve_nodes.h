@@ -33,7 +33,7 @@ static void endNodes(const Solve* solve, const SolveRange nodes)
 // See StepSolver::settle().
 static void settleNodes(const Solve* solve, const SolveRange nodes)
 {
-    if (!solve->m_cloth->m_rests || solve->m_progress->m_blocks == 0) return;
+    if (!solve->m_cloth->m_settles || solve->m_progress->m_blocks == 0) return;
     forAll(i, nodes.m_first, nodes.m_first + nodes.m_count) if (solve->m_paths[i].m_inverseMass > 0.0f)
         nodeSettle(nodeAt(solve, i), solve->m_states + i, solve->m_accelerations[i], solve->m_cloth->m_perStep);
 }

@@ -51,6 +51,7 @@ typedef struct SolveCloth
     DRAPE_UINT m_linkSweeps;    // in each substep, each with a sweep over the contacts
     DRAPE_UINT m_actingSweeps;  // see ContactSweep::restart()
     DRAPE_UINT m_rests;         // true if all obstacles rest
+    DRAPE_UINT m_settles;       // true if nodes that hardly moved come to rest, see StepSolver::settle()
     float m_substepTime;        // s
     float m_perStep;            // 1/s
     float m_pathShare;          // s, see nodeBegin()
@@ -227,7 +228,7 @@ typedef struct SolvePass
     DRAPE_UINT m_pass;
     DRAPE_UINT m_firstGroup;  // in the list of groups by level
     DRAPE_UINT m_substep;     // DRAPE_CLOSING: after the last one
-    DRAPE_UINT m_sweep;       // closing sweep
+    DRAPE_UINT m_sweep;       // closing sweep, or for rigid rows that of the substep
     DRAPE_UINT m_region;      // a moving obstacle's, counted from the cloth's first
     DRAPE_UINT m_round;       // counts from 1 for passes that end the step
 } SolvePass;

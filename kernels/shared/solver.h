@@ -73,22 +73,6 @@ typedef struct ActingContact
     DRAPE_UINT m_unused[3];
 } ActingContact;
 
-// A plane of a rigid body beside a node.
-typedef struct RigidPlane
-{
-    Vec3 m_normal;    // unit, from the body to the cloth
-    float m_gap;      // m, between node and plane at the step's start; negative is too close
-    float m_recover;  // m, of a negative gap, what the step mends
-    float m_friction;
-} RigidPlane;
-
-// Pushes of such a contact in a substep: friction in units of the multiplier, and the multiplier, kg m.
-typedef struct RigidHold
-{
-    Vec3 m_held;
-    float m_multiplier;
-} RigidHold;
-
 DRAPE_NAMESPACE_END
 
 #endif

@@ -8,6 +8,7 @@
 #include "../shared/contact.h"
 #include "../shared/kept_nodes.h"
 #include "../shared/mesh.h"
+#include "../shared/rigid.h"
 #include "../shared/solve_step.h"
 
 #define DRAPE_ORDER_CONTACTS                                                                                        \
@@ -17,6 +18,10 @@
 #define DRAPE_SOLVE_GROUPS DRAPE_ORDER_CONTACTS, DRAPE_VALUE(SolvePass, pass)
 
 #define DRAPE_SOLVE_LEAVES DRAPE_SOLVE_GROUPS, DRAPE_LOCAL(SolverNode, nodes), DRAPE_LOCAL(DRAPE_UINT, marks)
+
+#define DRAPE_SOLVE_RIGID                                                                                  \
+    DRAPE_VALUE(SolveLayout, layout), DRAPE_VALUE(RigidLayout, rigid), DRAPE_READS(SolveInputWord, input), \
+        DRAPE_UPDATES(SolveWorkWord, work)
 
 #define DRAPE_PREDICT_KEPT                                                                        \
     DRAPE_VALUE(KeptLaunch, launch), DRAPE_READS(KeptCloth, cloths), DRAPE_READS(KeptNode, kept), \
@@ -39,6 +44,8 @@ DRAPE_BIND(solveSmallCloths, DRAPE_SOLVE_LEAVES)
 DRAPE_BIND(sweepLeaves, DRAPE_SOLVE_LEAVES)
 DRAPE_BIND(sweepGroups, DRAPE_SOLVE_GROUPS)
 DRAPE_BIND(passNodes, DRAPE_SOLVE_GROUPS)
+DRAPE_BIND(takeRigid, DRAPE_SOLVE_RIGID)
+DRAPE_BIND(projectRigid, DRAPE_SOLVE_RIGID, DRAPE_VALUE(SolvePass, pass))
 DRAPE_BIND(predictKept, DRAPE_PREDICT_KEPT)
 DRAPE_BIND(takeKeptPaths, DRAPE_SOLVE_KEPT)
 DRAPE_BIND(keepNodes, DRAPE_SOLVE_KEPT, DRAPE_UPDATES(KeptBounds, bounds))

@@ -121,6 +121,20 @@ btRigidBody& DropWorld::addKinematic(btCollisionShape& shape, const btTransform&
     return added;
 }
 
+btRigidBody& DropWorld::addDynamic(btCollisionShape& shape, btScalar mass, const btTransform& pose)
+{
+    btVector3 inertia;
+    shape.calculateLocalInertia(mass, inertia);
+    btRigidBody::btRigidBodyConstructionInfo info(mass, nullptr, &shape, inertia);
+    info.m_startWorldTransform = pose;
+    auto body = std::make_unique<btRigidBody>(info);
+    btRigidBody& added = *body;
+    added.setActivationState(DISABLE_DEACTIVATION);
+    m_world.addRigidBody(&added);
+    m_obstacles.push_back(std::move(body));
+    return added;
+}
+
 void DropWorld::remove(btSoftBody& cloth)
 {
     m_world.removeSoftBody(&cloth);

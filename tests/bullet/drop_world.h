@@ -66,6 +66,8 @@ public:
     btCollisionObject& addObstacle(btCollisionShape& shape, const btTransform& pose = btTransform::getIdentity());
     // Adds a kinematic body at rest at the pose. Call setWorldTransform() before a step to set its motion.
     btRigidBody& addKinematic(btCollisionShape& shape, const btTransform& pose = btTransform::getIdentity());
+    // Adds a body of `mass` kg that never sleeps.
+    btRigidBody& addDynamic(btCollisionShape& shape, btScalar mass, const btTransform& pose);
     void remove(btSoftBody& cloth);            // and frees it
     void remove(btCollisionObject& obstacle);  // and frees it
     void step(int count = 1);

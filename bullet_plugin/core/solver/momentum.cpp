@@ -122,10 +122,10 @@ bool sumUp(const SolverNodes& nodes, const Substeps& substeps, const Kept& kept,
 // Takes off what the cloth gave to rigid bodies.
 void subtractGiven(const RigidRows& rigid, Vec3d origin, const Kept& kept, Sums& sums)
 {
-    const Vec3d impulse = kept.m_received * wide(rigid.impulse());
+    const Vec3d impulse = kept.m_received * wide(rigid.given().m_impulse);
     sums.m_missing = sums.m_missing - impulse;
-    sums.m_missingTurning = sums.m_missingTurning - kept.m_received * wide(rigid.turning()) -
-                            cross(wide(rigid.reference()) - origin, impulse);
+    sums.m_missingTurning = sums.m_missingTurning - kept.m_received * wide(rigid.given().m_turning) -
+                            cross(wide(rigid.given().m_reference) - origin, impulse);
 }
 
 // Returns the angular velocity of an angular momentum about the centre of mass.

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "bullet_plugin/core/scene/mesh_pool.h"
+#include "rigid_rows.h"
 #include "step_solver.h"
 #include "word_places.h"
 
@@ -16,7 +17,7 @@ constexpr int kMostSubsteps = 0xfff0;  // a record of pushes has 16 bits for the
 bool PackedStep::fits(const SolverCloth& cloth)
 {
     const ClothContacts& contacts = *cloth.m_contacts;
-    if (!cloth.m_substeps || cloth.m_rigid || !contacts.m_limit.faces() || contacts.m_isFiltered) return false;
+    if (!cloth.m_substeps || !contacts.m_limit.faces() || contacts.m_isFiltered) return false;
     // Links and contacts of a large cloth must have the same groups.
     if (contacts.m_parts->leafCount() > 1 && cloth.m_substeps->links().partsRevision() != contacts.m_parts->revision())
         return false;
@@ -96,6 +97,7 @@ void PackedStep::packCloth(std::size_t index, const ContactSource& source, const
     cloth.m_linkSweeps = Substeps::kLinkSweeps;
     cloth.m_actingSweeps = std::uint32_t(actingSweepsOf(substeps.count()));
     cloth.m_rests = limit.obstaclesRest() ? 1 : 0;
+    cloth.m_settles = cloth.m_rests && !m_cloths[index].m_rigid ? 1 : 0;
     cloth.m_substepTime = substeps.substepTime();
     cloth.m_perStep = substeps.perStep();
     cloth.m_pathShare = substeps.pathTime();
@@ -132,12 +134,16 @@ void PackedStep::layOut(const ContactSource& source, SolveStage& stage)
     layout.m_regions = input.add<SolveRegion>(m_regions.size());
     layout.m_obstacles = input.add<MeshOffsets>(m_obstacles.size());
     layout.m_obstacleCount = std::uint32_t(m_obstacles.size());
+    m_rigid.layOutInput(input);
     layout.m_total = work.add<std::uint32_t>(1);
     layout.m_buckets = work.add<SolveBucket>(m_topology.bucketCount());
     layout.m_progress = work.add<SolveProgress>(cloths);
     layout.m_allowances = work.add<SolveAllowance>(nodes);
+    m_rigid.layOutStates(work);
     m_step.m_clearedWords = work.words();
     layout.m_results = work.add<SolveResult>(cloths);
+    m_rigid.layOutResults(work);
+    m_step.m_rigid = m_rigid.layout();
     m_step.m_resultWords = work.words() - m_step.m_clearedWords;
     layout.m_nodes = work.add<SolverNode>(nodes);
     layout.m_states = work.add<NodeState>(nodes);
@@ -158,6 +164,7 @@ void PackedStep::layOut(const ContactSource& source, SolveStage& stage)
     copyToWords(words, layout.m_surfaces, m_surfaces.data(), m_surfaces.size());
     copyToWords(words, layout.m_regions, m_regions.data(), m_regions.size());
     copyToWords(words, layout.m_obstacles, m_obstacles.data(), m_obstacles.size());
+    m_rigid.copyTo(words);
     for (std::size_t i = 0; i < m_cloths.size(); ++i)
     {
         if (m_cloths[i].m_kept) continue;
@@ -199,7 +206,7 @@ void PackedStep::describeLaunches()
         const ClothParts& parts = *m_cloths[i].m_contacts->m_parts;
         for (std::size_t leaf = 0; leaf < parts.leafCount(); ++leaf)
             m_step.m_mostNodes = std::max(m_step.m_mostNodes, parts.firstNode(leaf + 1) - parts.firstNode(leaf));
-        if (parts.leafCount() == 1) continue;
+        if (!PackedTopology::isByPasses(m_cloths[i])) continue;
         const SolveCloth& cloth = m_clothRecords[i];
         m_step.m_substeps = std::max(m_step.m_substeps, cloth.m_substeps);
         m_step.m_regions = std::max(m_step.m_regions, cloth.m_regions.m_count);
@@ -224,6 +231,7 @@ void PackedStep::pack(const std::vector<SolverCloth>& cloths, const ContactSourc
         m_obstacles.push_back(source.pipeline()->obstacles().begin(slot));
     for (std::size_t i = 0; i < m_cloths.size(); ++i)
         packCloth(i, source, stage);
+    m_rigid.pack(m_cloths, m_clothRecords, m_topology.places());
     packKept(stage);
     layOut(source, stage);
     describeLaunches();
@@ -244,22 +252,34 @@ void PackedStep::unpackNodes(std::size_t cloth, const SolveWorkWord* words) cons
     }
 }
 
+// Returns whether the device has solved the cloth.
+bool PackedStep::isSolved(std::size_t cloth, const SolveResult& result, bool behind) const
+{
+    if (result.m_refused || (behind && result.m_meets)) return false;
+    return !(m_cloths[cloth].m_kept && result.m_mayHavePassed);
+}
+
 void PackedStep::unpack(const SolveWorkWord* words, SolveStage& stage, bool behind) const
 {
     const SolveLayout& layout = m_step.m_layout;
-    const auto* const results =
-        reinterpret_cast<const SolveResult*>(words + (layout.m_results - m_step.m_clearedWords));
+    const SolveWorkWord* const work = words - m_step.m_clearedWords;
+    const auto* const results = reinterpret_cast<const SolveResult*>(work + layout.m_results);
+    const auto moves = [this](std::size_t i) { return m_cloths[i].m_rigid && m_cloths[i].m_rigid->movingRows() > 0; };
+    bool areMovedSolved = true;
+    for (std::size_t i = 0; i < m_cloths.size(); ++i)
+        areMovedSolved = areMovedSolved && (isSolved(i, results[i], behind) || !moves(i));
     std::size_t kept = 0;  // place among kept cloths
     for (std::size_t i = 0; i < m_cloths.size(); ++i)
     {
         const KeptStep* const step = m_cloths[i].m_kept;
         const std::size_t place = step ? kept++ : 0;
-        if (results[i].m_refused || (behind && results[i].m_meets)) continue;
-        if (step && (results[i].m_mayHavePassed || !stage.kept().isGood(place))) continue;
+        if (!isSolved(i, results[i], behind) || (!areMovedSolved && moves(i))) continue;
+        if (step && !stage.kept().isGood(place)) continue;
         if (step)
             stage.kept().accept(step->m_id, place);
         else
             unpackNodes(i, words);
+        if (m_cloths[i].m_rigid) m_rigid.unpack(i, *m_cloths[i].m_rigid, work);
         m_cloths[i].m_contacts->m_mayHavePassed = results[i].m_mayHavePassed != 0;
         m_cloths[i].m_contacts->m_isSolved = true;
     }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "contact_sweep.h"
+#include "packed_rigid.h"
 #include "packed_topology.h"
 #include "solve_stage.h"
 
@@ -16,7 +17,7 @@ class PackedStep
 {
 public:
     // Returns whether a device can solve the cloth: the core has its links, and its contacts are the detection's own
-    // with obstacles that rest or move as rigid bodies.
+    // with obstacles that rest or move as rigid bodies. Its rigid rows are left out of account.
     static bool fits(const SolverCloth& cloth);
 
     // Packs cloths that fit. They must stay in place until unpack().
@@ -24,7 +25,8 @@ public:
     const SolveStep& step() const { return m_step; }
     // Accepts the device's result and marks the cloths as solved, with their nodes. behind: the step was solved behind
     // a detection. Cloths that the device could not solve stay as they were. So do, behind a detection, cloths with a
-    // path that meets a surface, and those that may have passed one if their nodes stay on the device.
+    // path that meets a surface, and those that may have passed one if their nodes stay on the device. Cloths beside
+    // rigid bodies that move stay together.
     void unpack(const SolveWorkWord* words, SolveStage& stage, bool behind) const;
 
 private:
@@ -35,6 +37,7 @@ private:
     void packRegions(const ClothContacts& contacts, const ContactSource& source, SolveCloth& cloth);
     void layOut(const ContactSource& source, SolveStage& stage);
     void describeLaunches();
+    bool isSolved(std::size_t cloth, const SolveResult& result, bool behind) const;
     void unpackNodes(std::size_t cloth, const SolveWorkWord* words) const;
 
     std::vector<SolverCloth> m_cloths;
@@ -44,5 +47,6 @@ private:
     std::vector<SolveSurface> m_surfaces;
     std::vector<SolveRegion> m_regions;
     std::vector<MeshOffsets> m_obstacles;
+    PackedRigid m_rigid;
 };
 }  // namespace drape

@@ -23,8 +23,8 @@ std::size_t heightOf(std::size_t group, std::size_t leafCount)
 
 bool PackedTopology::Key::operator==(const Key& other) const
 {
-    return std::tie(m_links, m_faces, m_order, m_parts) ==
-               std::tie(other.m_links, other.m_faces, other.m_order, other.m_parts) &&
+    return std::tie(m_links, m_faces, m_order, m_parts, m_isByPasses) ==
+               std::tie(other.m_links, other.m_faces, other.m_order, other.m_parts, other.m_isByPasses) &&
            std::equal(m_firsts, m_firsts + 5, other.m_firsts);
 }
 
@@ -35,7 +35,8 @@ PackedTopology::Key PackedTopology::keyOf(const SolverCloth& cloth, const MeshPo
                contacts.m_limit.faces()->revision(),
                0,
                contacts.m_parts->revision(),
-               {}};
+               {},
+               isByPasses(cloth)};
     if (!meshes || !contacts.m_order) return key;
     key.m_order = contacts.m_order->revision();
     const MeshOffsets first = meshes->begin(meshes->existingSlot(contacts.m_mesh));
@@ -181,7 +182,7 @@ void PackedTopology::packFeatures(const ClothContacts& contacts, const MeshPool&
     }
 }
 
-// Lists the groups of cloths that a work-group solves as a whole, and those of larger cloths by height.
+// Lists the groups of cloths that a work-group solves as a whole, and those of others by height.
 void PackedTopology::listGroups(const std::vector<SolverCloth>& cloths)
 {
     std::vector<std::uint32_t> small, whole;
@@ -190,7 +191,7 @@ void PackedTopology::listGroups(const std::vector<SolverCloth>& cloths)
     {
         const ClothParts& parts = *cloths[i].m_contacts->m_parts;
         const std::uint32_t first = m_cloths[i].m_firstGroup;
-        if (parts.leafCount() == 1)
+        if (!isByPasses(cloths[i]))
         {
             (parts.nodeCount() <= kMostSmallNodes ? small : whole).push_back(first);
             continue;

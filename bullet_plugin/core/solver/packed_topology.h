@@ -27,6 +27,12 @@ public:
         bool m_hasLinks, m_hasBuckets;
     };
 
+    // Returns whether a cloth is solved in passes, as a large cloth is: it has several leaves, or rigid rows.
+    static bool isByPasses(const SolverCloth& cloth)
+    {
+        return cloth.m_contacts->m_parts->leafCount() > 1 || cloth.m_rigid != nullptr;
+    }
+
     // Packs the cloths unless they are what was packed last. meshes: the pipeline's cloths; null without contacts.
     void pack(const std::vector<SolverCloth>& cloths, const MeshPool* meshes);
     // Differs from that of all other packed data.
@@ -55,6 +61,7 @@ private:
     {
         std::uint64_t m_links, m_faces, m_order, m_parts;
         std::uint32_t m_firsts[5];
+        bool m_isByPasses;
         bool operator==(const Key& other) const;
     };
     struct Cloth

@@ -11,7 +11,7 @@ namespace drape
 void SolveStage::create(Device& device, const ProgramLoader& load)
 {
     const cl::Program order = load("solver/order_contacts"), cloths = load("solver/solve_cloths"),
-                      groups = load("solver/solve_groups");
+                      groups = load("solver/solve_groups"), rigid = load("solver/solve_rigid");
     m_takePaths.create(device, order);
     m_countContacts.create(device, order);
     m_placeBuckets.create(device, order);
@@ -22,6 +22,8 @@ void SolveStage::create(Device& device, const ProgramLoader& load)
     m_sweepLeaves.create(device, cloths);
     m_sweepGroups.create(device, groups);
     m_passNodes.create(device, groups);
+    m_takeRigid.create(device, rigid);
+    m_projectRigid.create(device, rigid);
     m_kept.create(device, load);
     m_device = &device;
 }
@@ -123,6 +125,23 @@ void SolveStage::passLevels(SolvePass pass)
     }
 }
 
+void SolveStage::takeRigid()
+{
+    const RigidLayout& rigid = m_step->m_rigid;
+    if (rigid.m_chainCount == 0) return;
+    const std::size_t group = listGroup(*m_device), items = std::max(rigid.m_bodyCount, rigid.m_givenCount);
+    m_takeRigid.launch(*m_device, (items + group - 1) / group * group, group, m_step->m_layout, rigid, m_input, m_work);
+}
+
+// Projects the rows beside rigid bodies.
+void SolveStage::passRigid(SolvePass pass)
+{
+    const RigidLayout& rigid = m_step->m_rigid;
+    if (rigid.m_chainCount == 0) return;
+    const std::size_t group = listGroup(*m_device), width = (rigid.m_chainCount + group - 1) / group * group;
+    m_projectRigid.launch(*m_device, width, group, m_step->m_layout, rigid, m_input, m_work, pass);
+}
+
 // Brings nodes back that left their paths too far, beside resting obstacles, then beside each moving one.
 void SolveStage::limit(SolvePass pass)
 {
@@ -148,6 +167,7 @@ void SolveStage::solveLarge()
     SolvePass pass = {};
     pass.m_pass = DRAPE_PASS_BEGIN;
     passNodes(pass);
+    takeRigid();
     for (std::uint32_t substep = 0; substep <= m_step->m_substeps; ++substep)
     {
         pass.m_substep = substep;
@@ -155,13 +175,16 @@ void SolveStage::solveLarge()
         passNodes(pass);
         if (substep == m_step->m_substeps) break;
         if (substep > 0) limit(pass);
-        for (int sweep = 0; sweep < Substeps::kLinkSweeps; ++sweep)
+        for (std::uint32_t sweep = 0; sweep < Substeps::kLinkSweeps; ++sweep)
         {
             for (const std::uint32_t part : {DRAPE_PASS_LINKS, DRAPE_PASS_FACES, DRAPE_PASS_EDGES})
             {
                 pass.m_pass = part;
                 passLevels(pass);
             }
+            SolvePass rigid = pass;
+            rigid.m_sweep = sweep;
+            passRigid(rigid);
         }
         m_device->flush();
     }

@@ -2,11 +2,12 @@
 //
 // First the contacts are sorted into buckets (order_contacts.cl). A cloth of one leaf is then solved by one work-group,
 // all such cloths in one launch (solve_cloths.cl). Larger cloths take launches for each pass of the step, with a
-// work-group for each group of a level: leaves in local memory, then the levels above (solve_groups.cl). Launches do
-// not depend on the number of cloths. Input: a packed step. Output: the nodes' displacements and states, and a result
-// by cloth, as the host's solver would give them, bit for bit. The contacts are the host's, or those that a detection
-// leaves on the device; its step and the solver's then have one wait. Cost: one submission and one wait, or more where
-// contacts of a large cloth need many closing sweeps. Errors: in the device.
+// work-group for each group of a level: leaves in local memory, then the levels above (solve_groups.cl). So do cloths
+// beside rigid bodies, whose rows are passes of their own (solve_rigid.cl). Launches do not depend on the number of
+// cloths. Input: a packed step. Output: the nodes' displacements and states, and a result by cloth, as the host's
+// solver would give them, bit for bit. The contacts are the host's, or those that a detection leaves on the device; its
+// step and the solver's then have one wait. Cost: one submission and one wait, or more where contacts of a large cloth
+// need many closing sweeps. Errors: in the device.
 #pragma once
 
 #include "bullet_plugin/core/device/bound_kernel.h"
@@ -42,6 +43,7 @@ struct SolveStep
     // Maxima over large cloths, and whether all of their obstacles rest.
     std::uint32_t m_substeps = 0, m_regions = 0;
     bool m_rests = true;
+    RigidLayout m_rigid = {};  // without chains if there are no rows beside rigid bodies
 };
 
 class SolveStage
@@ -79,6 +81,8 @@ private:
     void solveWhole(Kernel& kernel, std::size_t gpuGroup, const SolveRange& groups);
     void passNodes(SolvePass pass);
     void passLevels(SolvePass pass);
+    void takeRigid();
+    void passRigid(SolvePass pass);
     void limit(SolvePass pass);
     void solveLarge();
     void close(std::uint32_t first, std::uint32_t last);
@@ -104,6 +108,8 @@ private:
     BoundKernel<kernels::sweepLeaves> m_sweepLeaves;
     BoundKernel<kernels::sweepGroups> m_sweepGroups;
     BoundKernel<kernels::passNodes> m_passNodes;
+    BoundKernel<kernels::takeRigid> m_takeRigid;
+    BoundKernel<kernels::projectRigid> m_projectRigid;
     Buffer<SolveInputWord> m_input{"solver input"};
     Buffer<SolveTopologyWord> m_topology{"solver topology"};
     std::uint64_t m_topologyRevision = 0;  // several solvers share the stage

@@ -142,7 +142,8 @@ void StepSolver::restart(int iteration)
         const float passed = cloth.m_substeps ? float(iteration + 1) / float(cloth.m_substeps->count()) : 1.0f;
         sweep->restart(passed, cloth.m_substeps ? actingSweepsOf(cloth.m_substeps->count()) : 0);
         if (!cloth.m_rigid) continue;
-        cloth.m_rigid->begin(cloth.m_substeps->substepTime(), cloth.m_substeps->correctionTime(), passed);
+        cloth.m_rigid->begin(sweep->nodes(), cloth.m_substeps->substepTime(), cloth.m_substeps->correctionTime(),
+                             passed);
     }
 }
 
@@ -156,7 +157,7 @@ void StepSolver::sweepInTurns()
                     { substeps.sweepLinks(nodes, threads); });
         m_team.run(m_meeting);
         for (const ContactSweep* sweep : m_turn)
-            if (RigidRows* rigid = sweep->cloth().m_rigid) rigid->project(sweep->nodes());
+            if (RigidRows* rigid = sweep->cloth().m_rigid) rigid->project();
     }
 }
 
@@ -343,10 +344,25 @@ void StepSolver::divide(const std::vector<SolverCloth>& cloths, const std::vecto
     m_onDevice.clear();
     m_onHost.clear();
     m_freeOnHost.clear();
+    const auto movingRows = [](const SolverCloth& cloth) { return cloth.m_rigid ? cloth.m_rigid->movingRows() : 0; };
+    // Cloths beside bodies that move may share these, so that they stay together.
+    bool takesMoved = true;
+    std::size_t rows = 0, nodes = 0;
+    for (std::size_t i = 0; i < cloths.size(); ++i)
+    {
+        if (cloths[i].m_rigid) cloths[i].m_rigid->setTurn(i);
+        const std::size_t moving = movingRows(cloths[i]);
+        if (moving > 0 && !PackedStep::fits(cloths[i])) takesMoved = false;
+        rows += moving;
+        nodes += cloths[i].m_contacts->m_nodes.count();
+    }
+    takesMoved = takesMoved && PackedRigid::isWorthwhile(rows, nodes);
+    const auto fits = [&](const SolverCloth& cloth)
+    { return stage && PackedStep::fits(cloth) && (takesMoved || movingRows(cloth) == 0); };
     for (const SolverCloth& cloth : cloths)
-        (stage && PackedStep::fits(cloth) ? m_onDevice : m_onHost).push_back(cloth);
+        (fits(cloth) ? m_onDevice : m_onHost).push_back(cloth);
     for (const SolverCloth& cloth : free)
-        (stage && PackedStep::fits(cloth) ? m_onDevice : m_freeOnHost).push_back(cloth);
+        (fits(cloth) ? m_onDevice : m_freeOnHost).push_back(cloth);
     // In an order that does not depend on contacts, so that less is packed anew.
     std::sort(m_onDevice.begin(), m_onDevice.end(),
               [](const SolverCloth& a, const SolverCloth& b)
