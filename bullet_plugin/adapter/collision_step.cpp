@@ -419,8 +419,12 @@ void CollisionStep::finish(const TakeSolved& takeSolved)
 bool CollisionStep::cutOffPath(Cut cut)
 {
     bool any = false;
-    for (BodyContacts& body : m_bodies)
-        if (body.m_isOffPath) any = cutAtImpactsOf(body, cut) || any;
+    for (std::size_t i = 0; i < m_bodies.size(); ++i)
+    {
+        if (!m_bodies[i].m_isOffPath || !cutAtImpactsOf(m_bodies[i], cut)) continue;
+        m_mirrors[i]->watch(true);
+        any = true;
+    }
     return any;
 }
 
@@ -455,11 +459,14 @@ void CollisionStep::detectRealPaths()
 std::vector<BodyContacts*> CollisionStep::checkOffPath()
 {
     std::vector<BodyContacts*> bodies;
-    for (BodyContacts& body : m_bodies)
+    for (std::size_t i = 0; i < m_bodies.size(); ++i)
     {
-        const ClothContacts& contacts = body.m_contacts;
-        body.m_isOffPath = !body.m_isAway && ((contacts.m_mayHavePassed && !body.m_wasTangled) ||
-                                              body.m_contacts.m_limit.anyOffPath(body.nodes()));
+        BodyContacts& body = m_bodies[i];
+        ClothContacts& contacts = body.m_contacts;
+        const bool mayHavePassed = contacts.m_mayHavePassed && !body.m_wasTangled;
+        body.m_isOffPath =
+            !body.m_isAway && (mayHavePassed || m_mirrors[i]->isWatched() || contacts.m_limit.anyOffPath(body.nodes()));
+        m_mirrors[i]->watch(false);
         if (body.m_isOffPath) bodies.push_back(&body);
     }
     if (bodies.empty()) return {};

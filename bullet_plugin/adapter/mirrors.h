@@ -77,6 +77,10 @@ public:
     // Declares that the nodes are no longer where the last step left them. Each pair of the cloth is then checked for
     // intersections before it counts as free of them.
     void startAnew() { ++m_startRevision; }
+    // A watched cloth is checked after its next step, whatever its solver says: in the last one it would have passed a
+    // surface.
+    void watch(bool isWatched) { m_isWatched = isWatched; }
+    bool isWatched() const { return m_isWatched; }
     // Counts up with each startAnew().
     std::uint64_t startRevision() const { return m_startRevision; }
     // Records the nodes' positions at a step's end: m_x after it, m_q for nodes that came home since.
@@ -111,6 +115,7 @@ private:
     std::vector<btVector3> m_ends;  // end positions of the last step, by node
     bool m_hasForeignFaces = false;
     bool m_takenUp = false;  // since the parts were cut
+    bool m_isWatched = false;
     bool m_fullCheck = true;
 };
 

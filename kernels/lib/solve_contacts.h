@@ -513,6 +513,25 @@ DRAPE_HOT_FUNCTION void sweepBuckets(const Solve* solve, const uint first, const
     sweep->m_worst = worst;
 }
 
+// See ContactGroup::endsNear().
+static int endsNear(const Solve* solve, const ActingContact* acting)
+{
+    return acting->m_distance - rowViolation(&acting->m_row, solve->m_nodes, 1.0f) < solve->m_cloth->m_nearDistance;
+}
+
+// Returns whether the features of a contact that turned end near, where they are nearest then.
+DRAPE_RARE_FUNCTION int turnedEndsNear(const Solve* solve, const uint index)
+{
+    ActingContact acting = solve->m_acting[index];
+    const SolveContact contact = solve->m_sorted[index];
+    __global const Contact* found = solve->m_contacts + solve->m_order[index];
+    const FeatureNodes nodes = featureNodes(solve, &contact, surfaceOf(solve, found));
+    const Displacements at = displacementsOf(solve, &contact);
+    const ContactPlane before = foundPlane(found);
+    ContactPlane plane;
+    return !renewPlane(&acting, &nodes, at.m_nodes, 1.0f, &before, &plane) || endsNear(solve, &acting);
+}
+
 // Limits the speeds that contacts of a feature gave. Returns whether one of them ends so near that a surface may have
 // been passed.
 static int limitFeature(const Solve* solve, const uint first, const uint last)
@@ -524,7 +543,9 @@ static int limitFeature(const Solve* solve, const uint first, const uint last)
         const ActingContact acting = solve->m_acting[i];
         if (!acting.m_pushed) continue;
         limitSpeed(&acting, solve->m_states);
-        near |= acting.m_distance - rowViolation(&acting.m_row, solve->m_nodes, 1.0f) < solve->m_cloth->m_nearDistance;
+        near |= endsNear(solve, &acting);
+        const int turns = (solve->m_sorted[i].m_flags & DRAPE_CONTACT_TURNS) != 0;
+        if (turns && acting.m_stage != 0 && !near) near |= turnedEndsNear(solve, i);
     }
     return near;
 }

@@ -118,6 +118,36 @@ void Judge::markHeld(Cloth& cloth)
     }
 }
 
+void Judge::markValid(Cloth& cloth)
+{
+    for (std::size_t i = 0; i < cloth.m_valid.size(); ++i)
+        cloth.m_valid[i] = isFinite(place(cloth.m_body->m_nodes[static_cast<int>(i)]));
+}
+
+// Returns the cloth's nodes in the obstacle's frame.
+std::vector<Vector3> Judge::placesIn(const Obstacle& obstacle, const Cloth& cloth)
+{
+    const InversePose intoObstacle(obstacle.m_obstacle->meshPose());
+    std::vector<Vector3> places;
+    for (int i = 0; i < cloth.m_body->m_nodes.size(); ++i)
+        places.push_back(intoObstacle * place(cloth.m_body->m_nodes[i]));
+    return places;
+}
+
+void Judge::followBetween(bool reported)
+{
+    for (Cloth& cloth : m_cloths)
+    {
+        markValid(cloth);
+        for (std::size_t o = 0; o < m_obstacles.size(); ++o)
+        {
+            const WorldObstacle& obstacle = *m_obstacles[o].m_obstacle;
+            if (obstacle.m_motion || obstacle.m_beforeStep) continue;
+            follow(cloth, o, placesIn(m_obstacles[o], cloth), reported);
+        }
+    }
+}
+
 void Judge::readSurface(Obstacle& obstacle)
 {
     const TriangleMesh& mesh = obstacle.m_obstacle->m_mesh;
@@ -143,19 +173,13 @@ Findings Judge::look(bool reported)
     for (Cloth& cloth : m_cloths)
     {
         markHeld(cloth);
+        markValid(cloth);
         const std::size_t count = cloth.m_held.size();
-        for (std::size_t i = 0; i < count; ++i)
-        {
-            cloth.m_valid[i] = isFinite(place(cloth.m_body->m_nodes[static_cast<int>(i)]));
-            findings.m_invalidNodes += cloth.m_valid[i] ? 0 : 1;
-        }
+        findings.m_invalidNodes += int(std::count(cloth.m_valid.begin(), cloth.m_valid.end(), false));
         std::vector<bool> through(count, false);
         for (std::size_t o = 0; o < m_obstacles.size(); ++o)
         {
-            const InversePose intoObstacle(m_obstacles[o].m_obstacle->meshPose());
-            std::vector<Vector3> places;
-            for (std::size_t i = 0; i < count; ++i)
-                places.push_back(intoObstacle * place(cloth.m_body->m_nodes[static_cast<int>(i)]));
+            const std::vector<Vector3> places = placesIn(m_obstacles[o], cloth);
             countPairs(cloth, m_obstacles[o], places, findings);
             follow(cloth, o, places, reported);
             for (std::size_t i = 0; i < count; ++i)

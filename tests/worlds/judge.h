@@ -35,6 +35,9 @@ public:
 
     // Looks at the world after a step. Nodes that pass in a step that reported something start anew where they are.
     Findings look(bool reported);
+    // Follows the nodes between two of Bullet's steps, beside obstacles that rest: the way through several steps bends
+    // around corners that a straight one would cut. Where the others are then, Bullet does not tell.
+    void followBetween(bool reported);
 
 private:
     struct Obstacle
@@ -57,6 +60,8 @@ private:
     };
 
     void markHeld(Cloth& cloth);
+    static void markValid(Cloth& cloth);
+    static std::vector<Vector3> placesIn(const Obstacle& obstacle, const Cloth& cloth);
     void readSurface(Obstacle& obstacle);
     void countPairs(const Cloth& cloth, const Obstacle& obstacle, const std::vector<Vector3>& places,
                     Findings& findings) const;

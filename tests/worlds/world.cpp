@@ -229,6 +229,7 @@ void World::beforeBulletStep(btDynamicsWorld* world, btScalar)
 {
     World& self = *static_cast<World*>(world->getWorldUserInfo());
     if (self.m_bulletSteps > 0 && self.m_plugin) self.m_status |= self.m_plugin->statistics().m_status;
+    if (self.m_bulletSteps > 0 && self.m_betweenSteps) self.m_betweenSteps();
     ++self.m_bulletSteps;
 }
 

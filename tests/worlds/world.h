@@ -98,7 +98,8 @@ public:
     btSoftRigidDynamicsWorld& bullet() { return *m_world; }
     const std::vector<std::unique_ptr<WorldObstacle>>& obstacles() const { return m_obstacles; }
     const std::vector<std::unique_ptr<WorldCloth>>& cloths() const { return m_cloths; }
-    // Returns the status bits of all of Bullet's steps in the last call of step(); 0 with Bullet's own collision.
+    // Returns the status bits of all of Bullet's steps so far in the last call of step(); 0 with Bullet's own
+    // collision.
     std::uint32_t status() const { return m_status; }
     // Continues an FNV-1a hash over all positions as float32; starts with kHashStart.
     std::uint64_t hash(std::uint64_t hash) const;
@@ -109,7 +110,8 @@ public:
     double m_dt = 1. / 60, m_fixedDt = 1. / 60;  // s
     int m_mostSubsteps = 0;
     WorldRandom m_timeRandom{1};
-    int m_frames = 90;  // calls of step() that the world is made for
+    int m_frames = 90;                     // calls of step() that the world is made for
+    std::function<void()> m_betweenSteps;  // called between two of Bullet's steps in one call of step(); may be empty
 
 private:
     double nextDuration();

@@ -112,20 +112,26 @@ ContactGroup::Row ContactGroup::makeRow(const SweptCloth& cloth, const Block& bl
     return {actingContact(&nodes, &contact.m_plane, &settings, contact.m_gaps), contact.m_carry};
 }
 
-// Renews the contact's plane where its features are nearest now; the block gets the same plane. Only faces at a vertex
-// turn their contacts, and a contact that was met keeps its plane.
-void ContactGroup::renewPlane(const SweptCloth& cloth, Row& row, Block& block, int lane)
+// Turns a contact of a face with a vertex to where the two are nearest now; see drape::renewPlane().
+bool ContactGroup::turn(const SweptCloth& cloth, const Block& block, int lane, float passed, Row& row,
+                        ContactPlane& plane)
 {
     const Contact& found = block.m_contacts[lane];
-    if (found.m_kind != DRAPE_FACE_VERTEX || found.m_time < 1) return;
     const int indices[3] = {block.m_nodes[0], block.m_nodes[1], block.m_count < 3 ? -1 : block.m_nodes[2]};
     const FeatureNodes nodes = featureNodes(cloth.nodes(), indices, row.m_carry);
     Vec3 displacements[3] = {};
     for (std::uint32_t k = 0; k < nodes.m_count; ++k)
         displacements[k] = cloth.nodes().displacement(nodes.m_nodes[k]);
     const ContactPlane before = {vec3Load(found.m_normal, 0), vec3Load(found.m_point, 0), {}};
+    return renewPlane(&row.m_acting, &nodes, displacements, passed, &before, &plane) != 0;
+}
+
+// Renews the contact's plane where its features are nearest now; the block gets the same plane. Only faces at a vertex
+// turn their contacts, and a contact that was met keeps its plane.
+void ContactGroup::renew(const SweptCloth& cloth, Row& row, Block& block, int lane)
+{
     ContactPlane plane;
-    if (!drape::renewPlane(&row.m_acting, &nodes, displacements, cloth.m_passed, &before, &plane)) return;
+    if (!turns(block, lane) || !turn(cloth, block, lane, cloth.m_passed, row, plane)) return;
     block.m_normal[0][lane] = plane.m_normal.x;
     block.m_normal[1][lane] = plane.m_normal.y;
     block.m_normal[2][lane] = plane.m_normal.z;
@@ -192,7 +198,7 @@ float ContactGroup::projectBlock(const SweptCloth& cloth, std::size_t index, uns
         if (!(acting.m_row.m_inverseMobility > 0)) continue;
         if (acting.m_stage != m_stage && rowViolation(&acting.m_row, nodes, cloth.m_passed) > 0)
         {
-            renewPlane(cloth, m_rows[std::size_t(at)], block, lane);
+            renew(cloth, m_rows[std::size_t(at)], block, lane);
             acting.m_stage = m_stage;
         }
         if (!(acting.m_row.m_inverseMobility > 0) || !project(cloth, acting, worst)) continue;
@@ -265,15 +271,31 @@ void ContactGroup::limitSpeeds(const SweptCloth& cloth, Kinds kinds) const
                 limitSpeed(&m_rows[std::size_t(row)].m_acting, cloth.nodes().states());
 }
 
+// Returns whether a contact that has pushed ends with less than `least` between its features' points, m. Its plane may
+// have turned to where nodes were on the way, so that it says nothing of where they end.
+bool ContactGroup::endsNear(const SweptCloth& cloth, const Block& block, int lane, const Row& row, float least)
+{
+    if (!row.m_acting.m_pushed) return false;
+    const auto isNear = [&](const ActingContact& acting)
+    { return acting.m_distance - rowViolation(&acting.m_row, cloth.nodes().nodes(), 1) < least; };
+    if (isNear(row.m_acting)) return true;
+    if (!turns(block, lane) || row.m_acting.m_stage == 0) return false;
+    Row now = row;
+    ContactPlane plane;
+    return !turn(cloth, block, lane, 1, now, plane) || isNear(now.m_acting);
+}
+
 bool ContactGroup::mayHavePassed(const SweptCloth& cloth) const
 {
-    const SolverNode* const nodes = cloth.nodes().nodes();
     const float least = kNearShare * cloth.m_contacts->m_leastThickness;
-    return std::any_of(m_rows.begin(), m_rows.end(),
-                       [&](const Row& row)
-                       {
-                           const ActingContact& acting = row.m_acting;
-                           return acting.m_pushed && acting.m_distance - rowViolation(&acting.m_row, nodes, 1) < least;
-                       });
+    for (std::size_t i = 0; i < m_blocks.size(); ++i)
+    {
+        for (int lane = 0; lane < kLanes; ++lane)
+        {
+            const int row = m_rowsOf[i].m_row[lane];
+            if (row >= 0 && endsNear(cloth, m_blocks[i], lane, m_rows[std::size_t(row)], least)) return true;
+        }
+    }
+    return false;
 }
 }  // namespace drape
