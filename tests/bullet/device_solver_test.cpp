@@ -222,6 +222,35 @@ TEST_P(DeviceSolverTest, ClothHangsOnAKinematicBodyAsOnTheHost)
     EXPECT_EQ(expectSame({addHanging}), std::size_t(kSteps));
 }
 
+// A large cloth loses its only row. The device then solves steps without rows.
+TEST_P(DeviceSolverTest, RowsOfALargeClothVanishAsOnTheHost)
+{
+    btBoxShape box(btVector3(btScalar(0.1), btScalar(0.1), btScalar(0.1)));
+    const auto runReleased = [&](Settings settings, SolverPlace place)
+    {
+        settings.m_solver = Solver::Drape;
+        settings.m_solverPlace = place;
+        Plugin plugin(settings);
+        MeshShape shape(makeSphere(0.4f, 3));
+        DropWorld world(&plugin);
+        world.addKinematic(shape.shape());
+        std::vector<btSoftBody*> cloths;
+        clothsOf(1, 60, 0)(world, cloths);
+        btRigidBody& holder = world.addKinematic(box, at(btScalar(-0.5), btScalar(0.7), btScalar(-0.5)));
+        cloths[0]->appendAnchor(0, &holder, true);
+        std::uint64_t hash = kHashStart;
+        for (int step = 0; step < 10; ++step)
+        {
+            if (step == 5) cloths[0]->m_anchors.resize(0);
+            world.step();
+            hash = hashOf(*cloths[0], hash);
+        }
+        return hash;
+    };
+    EXPECT_EQ(runReleased(hostSettings(), SolverPlace::Host),
+              runReleased(GetParam().m_settings, SolverPlace::Device));
+}
+
 // Two cloths hang on one weight, and a third falls beside them. Both pull at the weight in the same substeps.
 TEST_P(DeviceSolverTest, ClothsShareADynamicBodyAsOnTheHost)
 {

@@ -79,6 +79,7 @@ void PackedRigid::pack(const std::vector<SolverCloth>& cloths, const std::vector
     m_bodies.clear();
     m_given.clear();
     m_turns.clear();
+    m_layout = {};
     for (std::size_t i = 0; i < cloths.size(); ++i)
         if (cloths[i].m_rigid) m_turns.push_back(std::uint32_t(i));
     if (m_turns.empty()) return;
@@ -103,7 +104,6 @@ void PackedRigid::pack(const std::vector<SolverCloth>& cloths, const std::vector
             m_chains.push_back({run, run + 1});
         if (inTurn && first < last) m_chains.push_back({first, last});
     }
-    m_layout = {};
     m_layout.m_chainCount = std::uint32_t(m_chains.size());
     m_layout.m_bodyCount = std::uint32_t(m_bodies.size());
     m_layout.m_givenCount = std::uint32_t(m_given.size());
