@@ -408,6 +408,10 @@ std::size_t StepSolver::solve(const std::vector<SolverCloth>& cloths, const std:
     m_refused.clear();
     std::copy_if(m_onDevice.begin(), m_onDevice.end(), std::back_inserter(m_refused),
                  [](const SolverCloth& cloth) { return !cloth.m_contacts->m_isSolved; });
+    // In the caller's order, in which rows take turns at bodies that cloths share.
+    const auto turnOf = [](const SolverCloth& cloth) { return cloth.m_rigid ? cloth.m_rigid->turn() : std::size_t(0); };
+    std::sort(m_refused.begin(), m_refused.end(),
+              [&](const SolverCloth& a, const SolverCloth& b) { return turnOf(a) < turnOf(b); });
     solveOnHost(m_refused, {}, source);
     return solved;
 }
