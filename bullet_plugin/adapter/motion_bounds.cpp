@@ -156,17 +156,6 @@ btScalar reachBeyondBounds(const btCollisionShape& shape, btScalar activation)
     return most;
 }
 
-// Returns whether Bullet would hand the pair on and Drape would find its contacts once the body is awake.
-bool mayTouch(const PluginState& state, const btSoftBody& body, const btCollisionObject& object)
-{
-    btOverlappingPairCache* pairs = body.m_worldInfo->m_broadphase->getOverlappingPairCache();
-    btBroadphaseProxy* proxy = const_cast<btBroadphaseProxy*>(body.getBroadphaseHandle());
-    btBroadphaseProxy* other = const_cast<btBroadphaseProxy*>(object.getBroadphaseHandle());
-    return respond(body, object) && proxy && other && pairs->needsBroadphaseCollision(proxy, other) &&
-           body.checkCollideWith(&object) && object.checkCollideWith(&body) &&
-           handlesAny(state, body, object, *object.getCollisionShape());
-}
-
 class CollectObstacles : public btBroadphaseAabbCallback
 {
 public:
@@ -247,6 +236,16 @@ void coverMotion(const PluginState& state, btSoftBody& body, const Way& way, con
     }
 }
 }  // namespace
+
+bool mayTouch(const PluginState& state, const btSoftBody& body, const btCollisionObject& object)
+{
+    btOverlappingPairCache* pairs = body.m_worldInfo->m_broadphase->getOverlappingPairCache();
+    btBroadphaseProxy* proxy = const_cast<btBroadphaseProxy*>(body.getBroadphaseHandle());
+    btBroadphaseProxy* other = const_cast<btBroadphaseProxy*>(object.getBroadphaseHandle());
+    return respond(body, object) && proxy && other && pairs->needsBroadphaseCollision(proxy, other) &&
+           body.checkCollideWith(&object) && object.checkCollideWith(&body) &&
+           handlesAny(state, body, object, *object.getCollisionShape());
+}
 
 std::vector<StepObstacle> stepObstacles(const PluginState& state, const btSoftBody& body, KinematicMotions& motions,
                                         bool resting)

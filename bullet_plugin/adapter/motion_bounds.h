@@ -33,6 +33,9 @@ struct StepObstacle
     bool isActive() const { return m_motion.moves() || m_change > 0; }
 };
 
+// Returns whether Bullet would hand the pair on and Drape would find its contacts once the body is awake.
+bool mayTouch(const PluginState& state, const btSoftBody& body, const btCollisionObject& object);
+
 // Lists the obstacles of the body's world that move or change in this step, and the resting ones if `resting` is
 // true. Observes kinematic obstacles in either case, also resting ones. Does not check children of compounds and
 // moving meshes for changes. Empty if the body's world info names no broad phase.

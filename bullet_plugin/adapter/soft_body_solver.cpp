@@ -5,6 +5,7 @@
 #include "bullet_plugin/adapter/body_jobs.h"
 #include "bullet_plugin/adapter/body_nodes.h"
 #include "bullet_plugin/adapter/eligibility.h"
+#include "bullet_plugin/adapter/bounds_guard.h"
 #include "bullet_plugin/adapter/motion_bounds.h"
 #include "bullet_plugin/adapter/solver_work.h"
 #include "bullet_plugin/core/float_environment.h"
@@ -172,6 +173,12 @@ void SoftBodySolver::solveBodies(StepParts& parts)
         work.m_ends.size(), m_state->threads(), [&](std::size_t i) { return work.m_ends[i].second->count(); },
         [&](std::size_t i, ThreadTeam* threads)
         { SubstepBody::end(*work.m_ends[i].second, *work.m_ends[i].first, threads); });
+    for (int i = 0; i < m_softBodySet.size(); ++i)
+    {
+        btSoftBody& body = *m_softBodySet[i];
+        if (!work.isSteppedBody(body) || m_state->m_kept.stepOf(body)) continue;
+        if (holdInBounds(*m_state, body, work.contactsOf(body))) m_state->m_statistics.m_status |= kStepMotionHeldBack;
+    }
     work.m_rigidBodies.applyImpulses();
     parts.m_writeBackMs = watch.lapMs();
 }

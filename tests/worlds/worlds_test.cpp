@@ -146,7 +146,13 @@ TEST(Worlds, SubstepsKeepClothTogether)
 // Faces of light nodes turned far within a step and back. Their contacts had turned along and held no more.
 TEST(Worlds, FacesThatTurnWithinAStepStayOutside)
 {
-    expectGood({{"boxes", 4, "masses,multiple"}, {"anchors", 41, "masses,time"}}, WorldBackend::Substeps);
+    expectGood({{"boxes", 4, "masses,multiple"}}, WorldBackend::Substeps);
+}
+
+// Links between light and heavy nodes threw some of them to a mesh with which the cloth had no pair.
+TEST(Worlds, ClothStaysInTheBoundsOfItsPairs)
+{
+    expectGood({{"anchors", 41, "masses,time"}}, WorldBackend::Substeps);
 }
 
 // Cloth that had to be stopped before a surface passed it in the step after.
