@@ -118,7 +118,11 @@ CollisionStep::Pair CollisionStep::makePair(const PairNote& note, const ClothMir
 void CollisionStep::addPair(const PairNote& note)
 {
     ClothMirror& cloth = m_state.clothMirror(note);
-    const MeshId clothId = bodyOf(cloth.id()) ? cloth.id() : cloth.refresh(m_state.pipeline());
+    const auto bringHome = [&]
+    {
+        if (m_state.m_kept.stepOf(*note.m_cloth)) m_bringHome(*note.m_cloth);
+    };
+    const MeshId clothId = bodyOf(cloth.id()) ? cloth.id() : cloth.refresh(m_state.pipeline(), bringHome);
     const MeshId obstacleId = m_state.obstacleMirror(note).refresh(m_state.pipeline(), note.m_kinematic, note.m_motion);
     if (clothId == kNoMesh || obstacleId == kNoMesh) return;
     if (!bodyOf(clothId))

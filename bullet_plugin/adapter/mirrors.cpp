@@ -91,10 +91,12 @@ void ClothMirror::cutParts()
     m_takenUp = false;
 }
 
-MeshId ClothMirror::refresh(Pipeline& pipeline)
+MeshId ClothMirror::refresh(Pipeline& pipeline, const std::function<void()>& readNodes)
 {
     const std::vector<std::int32_t>& triangles = m_faces.triangles();
-    if (topologyChanged() || (m_id == kNoMesh && !triangles.empty()))
+    const bool isNew = topologyChanged() || (m_id == kNoMesh && !triangles.empty());
+    if (readNodes && (isNew || m_takenUp)) readNodes();
+    if (isNew)
     {
         if (m_id != kNoMesh) pipeline.remove(m_id);
         m_id = kNoMesh;

@@ -59,8 +59,9 @@ public:
     const btSoftBody* body() const { return m_body; }
     MeshId id() const { return m_id; }
 
-    // Adds the body to the pipeline, or replaces what is there when the topology changed.
-    MeshId refresh(Pipeline& pipeline);
+    // Adds the body to the pipeline, or replaces what is there when the topology changed. readNodes: called before the
+    // nodes' positions are read, which cut the parts.
+    MeshId refresh(Pipeline& pipeline, const std::function<void()>& readNodes = nullptr);
     // Adds a further mesh of the body to the pipeline, as refresh() left the first; the caller's to remove.
     MeshId addCopy(Pipeline& pipeline) const;
     // Faces as the pipeline has them: the body's faces, then its solid links, each as a face that repeats its second

@@ -118,6 +118,24 @@ TEST_P(KeptBodyTest, LargeClothMovesAsAtHome)
     EXPECT_GT(expectSame({clothOf(60), nullptr, nullptr}), kSteps / 4);
 }
 
+// A large cloth is cut into parts where its nodes are as it meets its first obstacle.
+TEST_P(KeptBodyTest, AnObstacleArrivesAtLargeClothAsAtHome)
+{
+    Scene scene = {clothOf(60), nullptr, nullptr};
+    scene.m_cloth.m_centre = btVector3(btScalar(1.5), btScalar(0.6), 0);
+    scene.m_add = [](DropWorld&, btSoftBody& cloth)
+    {
+        for (int i = 0; i < 60; ++i)
+            cloth.setMass(60 * i, 0);
+    };
+    scene.m_beforeStep = [](btRigidBody& sphere, btSoftBody&, int step)
+    {
+        const btVector3 at(btScalar(0.03) * btScalar(step), 0, 0);
+        sphere.setWorldTransform(btTransform(btQuaternion::getIdentity(), at));
+    };
+    EXPECT_GT(expectSame(scene), kSteps / 4);
+}
+
 TEST_P(KeptBodyTest, AMovingObstacleCarriesClothAsAtHome)
 {
     Scene scene = {clothOf(17), nullptr, nullptr};
