@@ -123,16 +123,18 @@ void StepRunner::expectMore(const Pipeline::Allowance& allowance)
 void StepRunner::leaveOutStretched(const Pipeline::Allowance& allowance)
 {
     const std::vector<std::size_t> active = pairedCloths();
+    // A GPU's cull lists tests that the host's excludes. Only the host's counts decide, so that all back ends agree.
+    const bool onDevice = m_backends.chosenDevice() != nullptr;
     TestLimits all = {0, 0};
     for (const std::size_t slot : active)
     {
         const float share = shareOf(slot, allowance);
         const TestLimits own = limitsOf(slot, share);
         const bool mayExceed = share <= 1 || (m_limitsRaised && std::isfinite(share));
-        if (mayExceed && (active.size() == 1 || exceeds(slot, active, own)))
+        if (mayExceed && ((active.size() == 1 && !onDevice) || exceeds(slot, active, own)))
             leaveOut(slot, own.m_tests + 1);
         else
-            all += own;
+            all += mayExceed && onDevice ? TestLimits() : own;
     }
     m_pairs.m_limits = all;
     m_limitsRaised = true;
