@@ -32,34 +32,37 @@ private:
     const PluginState& m_state;
     btSoftBody& m_body;
 };
+
+btVector3 clamped(const btVector3& place, const btVector3& low, const btVector3& high)
+{
+    btVector3 inside = place;
+    inside.setMax(low);
+    inside.setMin(high);
+    return inside;
+}
 }  // namespace
 
 bool holdInBounds(const PluginState& state, btSoftBody& body, BodyContacts* contacts)
 {
     const btBroadphaseProxy* const proxy = body.getBroadphaseHandle();
     if (!proxy || !body.m_worldInfo || !body.m_worldInfo->m_broadphase || body.m_nodes.size() == 0) return false;
-    btVector3 low = body.m_nodes[0].m_x, high = low;
-    for (int i = 1; i < body.m_nodes.size(); ++i)
+    const btVector3 low = proxy->m_aabbMin, high = proxy->m_aabbMax;
+    btVector3 least = low, greatest = high;  // over the bounds and the nodes; a node that is no number changes nothing
+    for (int i = 0; i < body.m_nodes.size(); ++i)
     {
-        low.setMin(body.m_nodes[i].m_x);
-        high.setMax(body.m_nodes[i].m_x);
+        least.setMin(body.m_nodes[i].m_x);
+        greatest.setMax(body.m_nodes[i].m_x);
     }
-    btVector3 inner = low, outer = high;
-    inner.setMax(proxy->m_aabbMin);
-    outer.setMin(proxy->m_aabbMax);
-    if (inner == low && outer == high) return false;
+    if (!((low - least).length2() > 0) && !((greatest - high).length2() > 0)) return false;
     FindUnpaired unpaired(state, body);
-    body.m_worldInfo->m_broadphase->aabbTest(low, high, unpaired);
+    body.m_worldInfo->m_broadphase->aabbTest(least, greatest, unpaired);
     if (!unpaired.m_found) return false;
     bool any = false;
     for (int i = 0; i < body.m_nodes.size(); ++i)
     {
         btSoftBody::Node& node = body.m_nodes[i];
-        btVector3 place = node.m_x;
-        place.setMax(proxy->m_aabbMin);
-        place.setMin(proxy->m_aabbMax);
-        const btVector3 shift = place - node.m_x;
-        if (shift.fuzzyZero() || !(node.m_im > 0)) continue;
+        const btVector3 place = clamped(node.m_x, low, high), shift = place - node.m_x;
+        if (!(shift.length2() > 0) || !(node.m_im > 0)) continue;
         any = true;
         node.m_x = place;
         node.m_v += shift * body.m_sst.isdt;

@@ -8,7 +8,7 @@
 
 DRAPE_NAMESPACE_BEGIN
 
-// A cloth and the bodies of its rows in a substep. m_given: null where it is not wanted.
+// A cloth and the bodies of its rows in a substep.
 typedef struct RigidSubstep
 {
     DRAPE_NODE_SPACE SolverNode* m_nodes;
@@ -57,7 +57,6 @@ DRAPE_FUNCTION void rigidPush(const RigidSubstep* substep, DRAPE_UINT node, DRAP
     body->m_spin = vec3Add(body->m_spin, rigidProduct(body->m_inverseInertia, turning));
     body->m_impulse = vec3Add(body->m_impulse, impulse);
     body->m_turning = vec3Add(body->m_turning, turning);
-    if (!substep->m_given) return;
     DRAPE_GLOBAL RigidGiven* given = substep->m_given;
     const Vec3 from = vec3Add(vec3Sub(body->m_centre, given->m_reference), arm);
     given->m_impulse = vec3Add(given->m_impulse, impulse);
