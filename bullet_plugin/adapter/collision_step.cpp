@@ -453,6 +453,17 @@ void CollisionStep::reportPassed()
     }
 }
 
+void CollisionStep::reportMeetingDeformed()
+{
+    for (const Pair& pair : m_pairs)
+    {
+        const std::size_t body = m_byCloth.at(pair.m_cloth);
+        if (!pair.m_carriedStarts || m_bodies[body].m_leftOut || !m_starts.endsMeeting(pair.m_start)) continue;
+        m_state.m_statistics.m_status |= kStepSurfacePassed;
+        m_mirrors[body]->startAnew();
+    }
+}
+
 void CollisionStep::detectRealPaths()
 {
     namePairs(Detection::Check);

@@ -52,6 +52,9 @@ public:
     // Reports, after finish(), a body without a pair in this step whose nodes are still not finite, as they were when
     // it had one.
     void reportInvalid(const btSoftBody& body);
+    // Reports cloth that ends the step through an obstacle whose vertices moved in it. Along such a motion faces start
+    // where their nodes are carried, so that contacts may miss what reaches the middle of a large face.
+    void reportMeetingDeformed();
     // Ends a step, after the solver: removes from velocities what pushes gave, and records the nodes' positions.
     void end();
 

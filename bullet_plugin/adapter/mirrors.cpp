@@ -230,6 +230,12 @@ void ObstacleMirror::deform(Pipeline& pipeline, std::vector<float>& positions, b
         startAnew();
 }
 
+MeshProbe& ObstacleMirror::moveBefore() const
+{
+    m_before->move(m_positions);
+    return *m_before;
+}
+
 void ObstacleMirror::drop(Pipeline& pipeline)
 {
     if (m_id != kNoMesh) pipeline.remove(m_id);

@@ -142,6 +142,8 @@ public:
     // Returns the mesh as it was in the step before if its vertices moved in place since, by no more than counts as
     // motion within this step; null otherwise. m_lastSeen is this step.
     MeshProbe* before() const { return m_deformedStep == m_lastSeen ? m_before.get() : nullptr; }
+    // Moves before() to the pipeline's positions, where it stays until the next refresh(). Only if it is not null.
+    MeshProbe& moveBefore() const;
     // The pipeline's positions at that time, and the largest displacement of a vertex, m.
     const std::vector<float>& positions() const { return m_positions; }
     float mostMotion() const { return m_mostMotion; }

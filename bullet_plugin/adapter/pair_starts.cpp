@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "bullet_plugin/adapter/body_nodes.h"
 #include "bullet_plugin/adapter/margins.h"
 #include "bullet_plugin/adapter/mirrors.h"
 #include "bullet_plugin/adapter/plugin_state.h"
@@ -23,11 +24,6 @@ constexpr int kMostPasses = 8;
 
 // Faces that a thread processes per turn.
 constexpr std::size_t kFacesPerJob = 512;
-
-Vec3 vec3Of(const btVector3& v)
-{
-    return vec3(static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z()));
-}
 
 // Calls visit(i) for the index of every face with three nodes of the cloth.
 template <class Visit>
@@ -67,17 +63,19 @@ void PairStarts::listFaces(const StartingPair& pair, const std::vector<int>* nod
     m_faces.erase(std::unique(m_faces.begin(), m_faces.end()), m_faces.end());
 }
 
-// Computes the nodes' positions at the step's start in the frame of the obstacle's positions: of all nodes, or of
+// Computes the nodes' positions at one end of the step in the frame of the obstacle's positions: of all nodes, or of
 // those in m_faces.
-void PairStarts::findPlaces(const StartingPair& pair, bool all)
+void PairStarts::findPlaces(const StartingPair& pair, bool all, PathEnd end)
 {
     const btSoftBody& body = *pair.m_cloth->body();
-    const btTransform toObstacle = pair.m_motion.m_start.inverse();
+    const bool atStart = end == PathEnd::Start;
+    const btTransform toObstacle = (atStart ? pair.m_motion.m_start : pair.m_motion.m_end).inverse();
     m_places.resize(static_cast<std::size_t>(body.m_nodes.size()));
     const auto find = [&](std::size_t node)
     {
-        const btVector3& start = body.m_nodes[static_cast<int>(node)].m_q;
-        m_places[node] = vec3Of(pair.m_kinematic ? toObstacle * start : start);
+        const btSoftBody::Node& at = body.m_nodes[static_cast<int>(node)];
+        const btVector3& place = atStart ? at.m_q : at.m_x;
+        m_places[node] = vec3Of(pair.m_kinematic ? toObstacle * place : place);
     };
     for (std::size_t node = 0; all && node < m_places.size(); ++node)
         find(node);
@@ -199,6 +197,22 @@ bool PairStarts::startsAnew(const StartingPair& pair) const
 {
     const auto guard = m_guards.find(std::uint64_t(pair.m_cloth->id()) << 32 | pair.m_obstacle->id());
     return guard == m_guards.end() || startsAnew(pair, guard->second);
+}
+
+bool PairStarts::endsMeeting(const StartingPair& pair)
+{
+    listFaces(pair, nullptr);
+    const std::vector<std::int32_t>& triangles = pair.m_cloth->faces().triangles();
+    const auto isHeld = [&](std::uint32_t face)
+    {
+        const std::int32_t* const nodes = &triangles[3 * std::size_t(face)];
+        return std::any_of(nodes, nodes + 3,
+                           [&](std::int32_t node)
+                           { return !(movableInverseMass(pair.m_cloth->body()->m_nodes[node]) > 0); });
+    };
+    m_faces.erase(std::remove_if(m_faces.begin(), m_faces.end(), isHeld), m_faces.end());
+    findPlaces(pair, true, PathEnd::End);
+    return findMeeting(pair, pair.m_obstacle->moveBefore()) > 0;
 }
 
 void PairStarts::check(const StartingPair& pair, const std::vector<int>& jumped, BodyContacts& body)

@@ -45,6 +45,9 @@ public:
     // Checks the pair where necessary. jumped: nodes that are not where the last step left them. If the pair
     // intersects and can be separated, adds the necessary pushes to the body. Reads Bullet's nodes only.
     void check(const StartingPair& pair, const std::vector<int>& jumped, BodyContacts& body);
+    // Returns whether a face of the cloth without fixed nodes ends the step through an obstacle whose vertices moved in
+    // it.
+    bool endsMeeting(const StartingPair& pair);
     // Returns whether check() will look at the pair's nodes though none has jumped.
     bool startsAnew(const StartingPair& pair) const;
 
@@ -85,7 +88,12 @@ private:
     using Row = std::map<int, btVector3>;  // by node, direction of the push, of any length
 
     void listFaces(const StartingPair& pair, const std::vector<int>* nodes);
-    void findPlaces(const StartingPair& pair, bool all);
+    enum class PathEnd
+    {
+        Start,
+        End
+    };
+    void findPlaces(const StartingPair& pair, bool all, PathEnd end = PathEnd::Start);
     bool mayMeet(const StartingPair& pair, Guard& guard);
     MeshProbe* probeOf(const StartingPair& pair);
     std::uint64_t findMeeting(const StartingPair& pair, const MeshProbe& probe);
@@ -113,7 +121,7 @@ private:
     std::uint64_t m_intersections = 0;
     // Working memory of one check, kept between checks.
     std::vector<std::uint32_t> m_faces;
-    std::vector<Vec3> m_places;  // by node, in the frame of the obstacle's positions, at the step's start
+    std::vector<Vec3> m_places;  // by node, in the frame of the obstacle's positions, at one end of the step
     std::vector<MeetingFace> m_meeting;
     std::vector<int> m_regions;          // by node: the first node that is reached over faces that meet nothing
     std::vector<unsigned char> m_wrong;  // by node: on the wrong side

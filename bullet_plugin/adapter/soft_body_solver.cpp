@@ -225,6 +225,7 @@ void SoftBodySolver::solveStep()
     const double waitMs = statistics.m_waitMs, uploadMs = step->uploadMs();
     watch.lapMs();
     closeOffPath(step->checkOffPath());
+    step->reportMeetingDeformed();
     step->end();
     statistics.m_clothsAway = m_work->endKept(m_softBodySet);
     parts.m_uploadMs = step->uploadMs();

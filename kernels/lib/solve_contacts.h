@@ -541,8 +541,7 @@ static int limitFeature(const Solve* solve, const uint first, const uint last)
     {
         if (!(solve->m_sorted[i].m_flags & DRAPE_CONTACT_MADE)) continue;
         const ActingContact acting = solve->m_acting[i];
-        if (!acting.m_pushed) continue;
-        limitSpeed(&acting, solve->m_states);
+        if (acting.m_pushed) limitSpeed(&acting, solve->m_states);
         near |= endsNear(solve, &acting);
         const int turns = (solve->m_sorted[i].m_flags & DRAPE_CONTACT_TURNS) != 0;
         if (turns && acting.m_stage != 0 && !near) near |= turnedEndsNear(solve, i);

@@ -95,7 +95,7 @@ void buildCracks(WorldBuilder& builder)
     const Hills hills = randomHills(random, {.05, .3}, 9);
     const int cells = 6 + random.below(30);
     const double share = random.chance(.3) ? 1 : random.within(.9, 1.);
-    builder.addObstacle(shattered(random, hillsOf(hills, cells, 4), share));
+    builder.addObstacle(shattered(random, hillsOf(hills, cells, 4), share)).m_frontsUp = true;
     builder.drop({random.within(.5, 1.6), .75 + builder.lift()});
 }
 

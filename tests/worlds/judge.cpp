@@ -13,14 +13,22 @@ namespace
 constexpr std::uint64_t kOffsetSeed = 77;
 constexpr double kOffset = 1e-7;  // m, far below every thickness
 
-Vector3 place(const btSoftBody::Node& node)
+Vector3 vectorOf(const btVector3& p)
 {
-    return {node.m_x.x(), node.m_x.y(), node.m_x.z()};
+    return {p.x(), p.y(), p.z()};
 }
 
 bool isFinite(const Vector3& p)
 {
     return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+}
+
+std::vector<btVector3> positionsOf(const btSoftBody& body)
+{
+    std::vector<btVector3> positions;
+    for (int i = 0; i < body.m_nodes.size(); ++i)
+        positions.push_back(body.m_nodes[i].m_x);
+    return positions;
 }
 
 // Inverts a pose whose basis is a rotation up to rounding: solves by Cramer's rule in double.
@@ -51,6 +59,16 @@ private:
     Vector3 m_rows[3], m_origin;
 };
 
+// Returns the positions in the frame of a mesh with the pose.
+std::vector<Vector3> placesIn(const btTransform& pose, const std::vector<btVector3>& positions)
+{
+    const InversePose inverse(pose);
+    std::vector<Vector3> places;
+    for (const btVector3& position : positions)
+        places.push_back(inverse * vectorOf(position));
+    return places;
+}
+
 struct Box
 {
     Vector3 m_low, m_high;
@@ -62,6 +80,17 @@ struct Box
         m_high = {std::max(m_high.x, p.x), std::max(m_high.y, p.y), std::max(m_high.z, p.z)};
     }
 };
+
+// Tells whether the triangle is wound clockwise where one looks at it from above.
+bool facesDown(const std::vector<float>& positions, const std::int32_t* triangle)
+{
+    const float* corners[3];
+    for (int k = 0; k < 3; ++k)
+        corners[k] = &positions[3 * static_cast<std::size_t>(triangle[k])];
+    const auto alongZ = [&](int k) { return double(corners[k][2]) - corners[0][2]; };
+    const auto alongX = [&](int k) { return double(corners[k][0]) - corners[0][0]; };
+    return alongZ(1) * alongX(2) < alongZ(2) * alongX(1);
+}
 
 // Returns +1 or -1 if the path crosses the triangle, by the side that it comes from, and 0 if it does not, or only
 // touches.
@@ -82,7 +111,7 @@ Judge::Judge(const World& world)
 {
     for (const auto& obstacle : world.obstacles())
     {
-        m_obstacles.push_back({obstacle.get(), obstacle->scaling(), nullptr});
+        m_obstacles.push_back({obstacle.get(), obstacle->scaling(), nullptr, obstacle->m_object->getWorldTransform()});
         readSurface(m_obstacles.back());
     }
     for (const auto& owned : world.cloths())
@@ -121,30 +150,30 @@ void Judge::markHeld(Cloth& cloth)
 void Judge::markValid(Cloth& cloth)
 {
     for (std::size_t i = 0; i < cloth.m_valid.size(); ++i)
-        cloth.m_valid[i] = isFinite(place(cloth.m_body->m_nodes[static_cast<int>(i)]));
+        cloth.m_valid[i] = isFinite(vectorOf(cloth.m_body->m_nodes[static_cast<int>(i)].m_x));
 }
 
-// Returns the cloth's nodes in the obstacle's frame.
-std::vector<Vector3> Judge::placesIn(const Obstacle& obstacle, const Cloth& cloth)
+void Judge::noteBetween(bool reported)
 {
-    const InversePose intoObstacle(obstacle.m_obstacle->meshPose());
-    std::vector<Vector3> places;
-    for (int i = 0; i < cloth.m_body->m_nodes.size(); ++i)
-        places.push_back(intoObstacle * place(cloth.m_body->m_nodes[i]));
-    return places;
-}
-
-void Judge::followBetween(bool reported)
-{
+    m_betweenReported.push_back(reported);
     for (Cloth& cloth : m_cloths)
+        cloth.m_between.push_back(positionsOf(*cloth.m_body));
+}
+
+// Follows the nodes through the noted steps. An obstacle's motion is shared evenly by the steps of a call
+// (docs/guarantees.md); other changes come before the first one.
+void Judge::followBetween(Cloth& cloth, std::size_t obstacle)
+{
+    const btTransform& from = m_obstacles[obstacle].m_pose;
+    const btTransform& to = m_obstacles[obstacle].m_obstacle->m_object->getWorldTransform();
+    const std::size_t count = cloth.m_between.size();
+    for (std::size_t i = 0; i < count; ++i)
     {
-        markValid(cloth);
-        for (std::size_t o = 0; o < m_obstacles.size(); ++o)
-        {
-            const WorldObstacle& obstacle = *m_obstacles[o].m_obstacle;
-            if (obstacle.m_motion || obstacle.m_beforeStep) continue;
-            follow(cloth, o, placesIn(m_obstacles[o], cloth), reported);
-        }
+        const btScalar share = btScalar(i + 1) / btScalar(count + 1);
+        const btTransform pose(from.getRotation().slerp(to.getRotation(), share),
+                               from.getOrigin().lerp(to.getOrigin(), share));
+        const btTransform meshPose = (from == to ? to : pose) * m_obstacles[obstacle].m_obstacle->m_inObject;
+        follow(cloth, obstacle, placesIn(meshPose, cloth.m_between[i]), m_betweenReported[i]);
     }
 }
 
@@ -159,7 +188,9 @@ void Judge::readSurface(Obstacle& obstacle)
     for (std::size_t i = 0; i < mesh.m_triangles.size(); i += 3)
     {
         const std::int32_t* t = &mesh.m_triangles[i];
-        if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0]) triangles.insert(triangles.end(), t, t + 3);
+        if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) continue;
+        const bool turns = obstacle.m_obstacle->m_frontsUp && facesDown(positions, t);
+        triangles.insert(triangles.end(), {t[0], t[turns ? 2 : 1], t[turns ? 1 : 2]});
     }
     obstacle.m_surface =
         std::make_unique<TriangleTree>(positions.data(), mesh.vertexCount(), triangles.data(), triangles.size() / 3);
@@ -179,15 +210,23 @@ Findings Judge::look(bool reported)
         std::vector<bool> through(count, false);
         for (std::size_t o = 0; o < m_obstacles.size(); ++o)
         {
-            const std::vector<Vector3> places = placesIn(m_obstacles[o], cloth);
+            const WorldObstacle& obstacle = *m_obstacles[o].m_obstacle;
+            const std::vector<Vector3> places =
+                placesIn(obstacle.m_object->getWorldTransform() * obstacle.m_inObject, positionsOf(*cloth.m_body));
+            followBetween(cloth, o);
             countPairs(cloth, m_obstacles[o], places, findings);
             follow(cloth, o, places, reported);
+            forgetWaysAroundRims(cloth, cloth.m_follows[o]);
             for (std::size_t i = 0; i < count; ++i)
                 if (cloth.m_follows[o].m_passes[i] != 0) through[i] = true;
         }
         for (std::size_t i = 0; i < count; ++i)
             if (through[i]) ++(cloth.m_held[i] ? findings.m_heldThrough : findings.m_through);
+        cloth.m_between.clear();
     }
+    m_betweenReported.clear();
+    for (Obstacle& obstacle : m_obstacles)
+        obstacle.m_pose = obstacle.m_obstacle->m_object->getWorldTransform();
     return findings;
 }
 
@@ -241,20 +280,41 @@ void Judge::follow(Cloth& cloth, std::size_t obstacle, const std::vector<Vector3
     for (std::size_t i = 0; i < places.size(); ++i)
         now[i] = places[i] + cloth.m_offsets[i];
     follow.m_passes.resize(places.size(), 0);
+    follow.m_repeats.assign(places.size(), false);
     for (std::size_t i = 0; i < follow.m_last.size() && !reported; ++i)
     {
         const Vector3 from = follow.m_last[i], to = now[i];
-        if (!cloth.m_valid[i] || !isFinite(from)) continue;
+        if (!isFinite(to) || !isFinite(from)) continue;
         Box box(from);
         box.add(to);
+        int meetings = 0;
         surface.visitBox(box.m_low, box.m_high,
                          [&](std::int32_t triangle)
                          {
                              Vector3 corners[3];
                              surface.corners(triangle, corners);
-                             follow.m_passes[i] += passes(from, to, corners);
+                             const int pass = passes(from, to, corners);
+                             follow.m_passes[i] += pass;
+                             meetings += pass != 0 ? 1 : 0;
                          });
+        follow.m_repeats[i] = meetings > 1;
     }
     follow.m_last = std::move(now);
+}
+
+// Cloth that flies over hills beyond their rim within a step follows them. The straight way of a node dives through a
+// hill, and leaves the surface below the rim. Such a node counts as through only if one that it is linked to does, too.
+void Judge::forgetWaysAroundRims(const Cloth& cloth, Follow& follow)
+{
+    std::vector<bool> alone = follow.m_repeats;
+    const btSoftBody& body = *cloth.m_body;
+    for (int i = 0; i < body.m_links.size(); ++i)
+    {
+        const std::size_t a = static_cast<std::size_t>(body.m_links[i].m_n[0] - &body.m_nodes[0]);
+        const std::size_t b = static_cast<std::size_t>(body.m_links[i].m_n[1] - &body.m_nodes[0]);
+        if (follow.m_passes[a] != 0 && follow.m_passes[b] != 0) alone[a] = alone[b] = false;
+    }
+    for (std::size_t i = 0; i < alone.size(); ++i)
+        if (alone[i]) follow.m_passes[i] = 0;
 }
 }  // namespace drape::test

@@ -35,9 +35,9 @@ public:
 
     // Looks at the world after a step. Nodes that pass in a step that reported something start anew where they are.
     Findings look(bool reported);
-    // Follows the nodes between two of Bullet's steps, beside obstacles that rest: the way through several steps bends
-    // around corners that a straight one would cut. Where the others are then, Bullet does not tell.
-    void followBetween(bool reported);
+    // Notes where nodes are between two of Bullet's steps, for the next look: the way through several steps bends
+    // around corners that a straight one would cut.
+    void noteBetween(bool reported);
 
 private:
     struct Obstacle
@@ -45,31 +45,36 @@ private:
         const WorldObstacle* m_obstacle;
         btVector3 m_scaling;
         std::unique_ptr<TriangleTree> m_surface;
+        btTransform m_pose;  // the object's pose at the last look
     };
     struct Follow  // one cloth beside one obstacle
     {
         std::vector<Vector3> m_last;  // in the obstacle's frame; empty before the first look
         std::vector<int> m_passes;    // from the front minus from the back
+        std::vector<bool> m_repeats;  // the last straight way met the surface several times
     };
     struct Cloth
     {
         const btSoftBody* m_body;
         std::vector<bool> m_held, m_valid, m_hasFace;
         std::vector<Vector3> m_offsets;
-        std::vector<Follow> m_follows;  // per obstacle
+        std::vector<Follow> m_follows;                  // per obstacle
+        std::vector<std::vector<btVector3>> m_between;  // positions after each of Bullet's steps but the last
     };
 
     void markHeld(Cloth& cloth);
     static void markValid(Cloth& cloth);
-    static std::vector<Vector3> placesIn(const Obstacle& obstacle, const Cloth& cloth);
+    void followBetween(Cloth& cloth, std::size_t obstacle);
     void readSurface(Obstacle& obstacle);
     void countPairs(const Cloth& cloth, const Obstacle& obstacle, const std::vector<Vector3>& places,
                     Findings& findings) const;
     void countPairsOf(const btSoftBody::Node* const nodes[3], const Cloth& cloth, const Obstacle& obstacle,
                       const std::vector<Vector3>& places, Findings& findings) const;
     void follow(Cloth& cloth, std::size_t obstacle, const std::vector<Vector3>& places, bool reported);
+    static void forgetWaysAroundRims(const Cloth& cloth, Follow& follow);
 
     std::vector<Obstacle> m_obstacles;
     std::vector<Cloth> m_cloths;
+    std::vector<bool> m_betweenReported;  // by noted step
 };
 }  // namespace drape::test

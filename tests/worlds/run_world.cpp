@@ -41,7 +41,7 @@ WorldResult runWorld(const WorldSpec& spec, WorldBackend backend, bool verbose)
     const std::unique_ptr<World> world = makeWorld(spec, backend);
     Judge judge(*world);
     const Findings start = judge.look(false);
-    world->m_betweenSteps = [&] { judge.followBetween(reportsMissingContacts(world->status())); };
+    world->m_betweenSteps = [&] { judge.noteBetween(reportsMissingContacts(world->status())); };
     result.m_hash = World::kHashStart;
     for (int frame = 0; frame < world->m_frames; ++frame)
     {

@@ -39,10 +39,10 @@ struct WorldObstacle
     std::unique_ptr<btCollisionObject> m_object;
     std::function<btTransform(double time)> m_motion;  // pose of the object over time; empty: the object rests
     std::function<void(double time)> m_beforeStep;     // other changes; may be empty
+    bool m_frontsUp = false;  // the upper side of every triangle is its front, whatever its winding
 
     btCollisionShape& shape();
     btVector3 scaling() const;
-    btTransform meshPose() const { return m_object->getWorldTransform() * m_inObject; }
 };
 
 struct WorldCloth

@@ -46,7 +46,7 @@ std::function<btTransform(double)> WorldBuilder::randomMotion(const btTransform&
     };
 }
 
-void WorldBuilder::addObstacle(const TriangleMesh& mesh, const btTransform& pose, bool mayMove)
+WorldObstacle& WorldBuilder::addObstacle(const TriangleMesh& mesh, const btTransform& pose, bool mayMove)
 {
     TriangleMesh unscaled = mesh;
     double factors[3] = {1, 1, 1};
@@ -71,6 +71,7 @@ void WorldBuilder::addObstacle(const TriangleMesh& mesh, const btTransform& pose
     spec.m_pose = pose * offset;
     WorldObstacle& obstacle = m_world.addObstacle(unscaled, spec);
     if (spec.m_kinematic) obstacle.m_motion = randomMotion(pose, offset);
+    return obstacle;
 }
 
 void WorldBuilder::addFloor(double height, double width)

@@ -34,8 +34,8 @@ public:
     void keepObstacles() { m_obstaclesMayMove = false; }
 
     // Adds an obstacle at rest and applies the modifiers that concern obstacles.
-    void addObstacle(const TriangleMesh& mesh, const btTransform& pose = btTransform::getIdentity(),
-                     bool mayMove = true);
+    WorldObstacle& addObstacle(const TriangleMesh& mesh, const btTransform& pose = btTransform::getIdentity(),
+                               bool mayMove = true);
     // Adds a wide floor whose middle is at that height.
     void addFloor(double height, double width);
     // Adds a kinematic obstacle with a motion of its own, which starts at motion(0). Modifiers do not change it.

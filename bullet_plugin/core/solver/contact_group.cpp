@@ -271,11 +271,10 @@ void ContactGroup::limitSpeeds(const SweptCloth& cloth, Kinds kinds) const
                 limitSpeed(&m_rows[std::size_t(row)].m_acting, cloth.nodes().states());
 }
 
-// Returns whether a contact that has pushed ends with less than `least` between its features' points, m. Its plane may
-// have turned to where nodes were on the way, so that it says nothing of where they end.
+// Returns whether a contact ends with less than `least` between its features' points, m. It may have turned to where
+// nodes were on the way, away from where they end.
 bool ContactGroup::endsNear(const SweptCloth& cloth, const Block& block, int lane, const Row& row, float least)
 {
-    if (!row.m_acting.m_pushed) return false;
     const auto isNear = [&](const ActingContact& acting)
     { return acting.m_distance - rowViolation(&acting.m_row, cloth.nodes().nodes(), 1) < least; };
     if (isNear(row.m_acting)) return true;
