@@ -7,7 +7,7 @@
 #
 #   --jobs N              processes at a time (as many as there are cores)
 #   --plain-failing N     the most worlds that may fail of 4,000 without modifiers (0)
-#   --modified-failing N  the most of 4,000 with random modifiers (12 with Bullet's links, 9 with Drape's)
+#   --modified-failing N  the most of 4,000 with random modifiers (1: one takes too long, with either solver of links)
 #   --tiny-failing N      the most of 300,000 tiny ones (12)
 #   --ropes-failing N     the most of 2,000 with ropes (0)
 #   --skirts-left N       skirts of the two grids that may still intersect their body in the last step (0)
@@ -50,14 +50,14 @@ worlds() {
   build/release/bin/drape_worlds --jobs "$jobs" "$@" || failed=1
 }
 worlds --kind all --count 4000 --most-failing "$plain"
-worlds --kind all --count 4000 --modifiers random --most-failing "${modified:-12}"
+worlds --kind all --count 4000 --modifiers random --most-failing "${modified:-1}"
 worlds --backend substeps --kind all --count 4000 --most-failing "$plain"
-worlds --backend substeps --kind all --count 4000 --modifiers random --most-failing "${modified:-9}"
+worlds --backend substeps --kind all --count 4000 --modifiers random --most-failing "${modified:-1}"
 worlds --kind tiny --count 300000 --most-failing "$tiny"
 worlds --kind ropes --count 2000 --most-failing "$ropes"
 worlds --kind skirts --most-failing 354 --most-failing-at-end "$skirts"
-# Measured: 0.125 mm/s at most.
-build/release/bin/rest_speeds --models "${DRAPE_MODELS_DIR:-none}" --damping 0.05 --most 0.15 || failed=1
+# Measured: 0.089 mm/s at most.
+build/release/bin/rest_speeds --models "${DRAPE_MODELS_DIR:-none}" --damping 0.05 --most 0.1 || failed=1
 bash tests/run_sanitized.sh --full || failed=1
 bash tests/run_fuzzers.sh 300 || failed=1
 exit $failed

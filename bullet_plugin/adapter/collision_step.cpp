@@ -478,7 +478,7 @@ std::vector<BodyContacts*> CollisionStep::checkOffPath()
     {
         BodyContacts& body = m_bodies[i];
         ClothContacts& contacts = body.m_contacts;
-        const bool mayHavePassed = contacts.m_mayHavePassed && !body.m_wasTangled;
+        const bool mayHavePassed = contacts.m_mayHavePassed && !contacts.m_isFiltered;
         body.m_isOffPath =
             !body.m_isAway && (mayHavePassed || m_mirrors[i]->isWatched() || contacts.m_limit.anyOffPath(body.nodes()));
         m_mirrors[i]->watch(false);

@@ -10,19 +10,27 @@ DRAPE_NAMESPACE_BEGIN
 // Bounds of nodeSettle(): the displacement in a step, as a share of the acceleration times the step's time squared, and
 // the speed at its end, as a share of the acceleration times the time. Measured: docs/design_notes/contact_sweeps.md,
 // "Rest".
-#define DRAPE_SETTLED_WAY 0.02f
+#define DRAPE_SETTLED_WAY 0.015f
 #define DRAPE_SETTLED_SPEED 0.006f
 
-// Puts a node back to its path's start, at rest, if it hardly moved in the step. Without acceleration no node settles.
-// acceleration: m/s², by gravity and forces. perStep: 1/s, the inverse of the step's time.
+// Bound of the displacement, in the same unit, up to which corrections alone moved a node without such a speed, and the
+// share of its way that it goes then.
+#define DRAPE_CORRECTED_WAY 0.165f
+#define DRAPE_CORRECTED_SHARE 0.75f
+
+// Puts a node to rest if it has hardly any speed: at its path's start if it hardly moved in the step, or on its way if
+// corrections moved it somewhat farther. Without acceleration nothing changes. acceleration: m/s², by gravity and
+// forces. perStep: 1/s, the inverse of the step's time.
 DRAPE_FUNCTION void nodeSettle(DRAPE_NODE_SPACE SolverNode* node, DRAPE_GLOBAL NodeState* state, Vec3 acceleration,
                                float perStep)
 {
     const float most2 = vec3Dot(acceleration, acceleration);
     const Vec3 speed = vec3Scale(state->m_velocity, perStep / DRAPE_SETTLED_SPEED);
     const Vec3 way = vec3Scale(node->m_displacement, perStep * perStep / DRAPE_SETTLED_WAY);
-    if (!(vec3Dot(speed, speed) < most2) || !(vec3Dot(way, way) < most2)) return;
-    node->m_displacement = vec3(0.0f, 0.0f, 0.0f);
+    const float farther = DRAPE_SETTLED_WAY / DRAPE_CORRECTED_WAY;
+    if (!(vec3Dot(speed, speed) < most2) || !(vec3Dot(way, way) * (farther * farther) < most2)) return;
+    const float share = vec3Dot(way, way) < most2 ? 0.0f : DRAPE_CORRECTED_SHARE;
+    node->m_displacement = vec3Scale(node->m_displacement, share);
     state->m_velocity = vec3(0.0f, 0.0f, 0.0f);
 }
 
