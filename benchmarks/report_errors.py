@@ -56,6 +56,34 @@ def knob_table(rows):
                     [[*line, *(cells.get(scene, "–") for scene in scenes)] for line, cells in lines.items()]))
 
 
+def errors_of(row):
+    return [row.get(column) or 0 for column in ("penetration_mm", "intersecting_pairs", "nodes_through")]
+
+
+def pareto_front(rows):
+    """Returns the rows than which no other is both as fast and as right, and faster or more right; fastest first."""
+    points = [(row["median_ms"], *errors_of(row)) for row in rows]
+
+    def is_beaten(point):
+        return any(other != point and all(a <= b for a, b in zip(other, point)) for other in points)
+    front = [row for row, point in zip(rows, points) if not is_beaten(point)]
+    return sorted(front, key=lambda row: row["median_ms"])
+
+
+def front_table(rows):
+    lines = []
+    for scene in in_order(rows, "scene"):
+        cells = []
+        for methods in (("drape", "drape_host"), ("bullet",)):
+            mine = [row for method in methods for row in select(rows, scene=scene, method=method, ended="whole")
+                    if knob(row) not in ("fall", "rest")]
+            cells.append("; ".join(f"{row['setting']} {knob_cell(row)}" for row in pareto_front(mine)) or "–")
+        lines.append([scene, *cells])
+    return ("Pareto fronts: settings that no other setting of the same solver beats in time without being more wrong. Median ms "
+            "of a frame; brackets as above.\n\n"
+            + table(["scene", "Drape, device or host", "Bullet built in"], lines))
+
+
 def fall_table(rows):
     lines = []
     for scene in in_order(rows, "scene"):
@@ -78,7 +106,7 @@ def text(rows):
             "(95th percentile).\n\n"
             + table(["scene", "method", "setting", "frame, ms"] + [title for _, title, _ in ERRORS],
                     list(scene_lines(rows)))
-            + knob_table(rows) + fall_table(rows))
+            + knob_table(rows) + front_table(rows) + fall_table(rows))
 
 
 def query_table(rows):

@@ -7,7 +7,7 @@
 #
 #   --jobs N              processes at a time (as many as there are cores)
 #   --plain-failing N     the most worlds that may fail of 4,000 without modifiers (0)
-#   --modified-failing N  the most of 4,000 with random modifiers (1: one takes too long, with either solver of links)
+#   --modified-failing N  the most of 4,000 with random modifiers (1, which takes too long)
 #   --tiny-failing N      the most of 300,000 tiny ones (12)
 #   --ropes-failing N     the most of 2,000 with ropes (0)
 #   --skirts-left N       skirts of the two grids that may still intersect their body in the last step (0)
