@@ -79,8 +79,8 @@ def front_table(rows):
                     if knob(row) not in ("fall", "rest")]
             cells.append("; ".join(f"{row['setting']} {knob_cell(row)}" for row in pareto_front(mine)) or "–")
         lines.append([scene, *cells])
-    return ("Pareto fronts: settings that no other setting of the same solver beats in time without being more wrong. Median ms "
-            "of a frame; brackets as above.\n\n"
+    return ("Pareto fronts: settings that no other setting of the same solver beats in time without being more wrong. "
+            "Median ms of a frame; brackets as above.\n\n"
             + table(["scene", "Drape, device or host", "Bullet built in"], lines))
 
 
