@@ -201,6 +201,8 @@ bool PairStarts::startsAnew(const StartingPair& pair) const
 
 bool PairStarts::endsMeeting(const StartingPair& pair)
 {
+    const auto guard = m_guards.find(std::uint64_t(pair.m_cloth->id()) << 32 | pair.m_obstacle->id());
+    if (guard == m_guards.end() || guard->second.m_intersections > 0) return false;
     listFaces(pair, nullptr);
     const std::vector<std::int32_t>& triangles = pair.m_cloth->faces().triangles();
     const auto isHeld = [&](std::uint32_t face)

@@ -18,9 +18,9 @@ DRAPE_NAMESPACE_BEGIN
 #define DRAPE_CORRECTED_WAY 0.165f
 #define DRAPE_CORRECTED_SHARE 0.75f
 
-// Puts a node to rest if it has hardly any speed: at its path's start if it hardly moved in the step, or on its way if
-// corrections moved it somewhat farther. Without acceleration nothing changes. acceleration: m/s², by gravity and
-// forces. perStep: 1/s, the inverse of the step's time.
+// Puts a node with hardly any speed to rest: at its path's start if it hardly moved in the step, or at a share of its
+// way if corrections moved it somewhat farther. Without acceleration nothing changes. acceleration: m/s², by gravity
+// and forces. perStep: 1/s, the inverse of the step's time.
 DRAPE_FUNCTION void nodeSettle(DRAPE_NODE_SPACE SolverNode* node, DRAPE_GLOBAL NodeState* state, Vec3 acceleration,
                                float perStep)
 {

@@ -49,8 +49,7 @@ int run(const WorldsOptions& options)
     else if (!runWorlds(worlds, {backendOf(options.m_backend), options.m_jobs, options.m_timeout}, done))
         return fail("drape_worlds", kExitFailed, "no process could be started");
     std::fputs(summary.text().c_str(), stdout);
-    const bool good =
-        summary.failing() <= options.m_mostFailing && summary.failingAtEnd() <= options.m_mostFailingAtEnd;
+    const bool good = summary.failing() <= options.m_mostFailing;
     return good ? kExitGood : kExitFailed;
 }
 }  // namespace

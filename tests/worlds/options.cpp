@@ -57,8 +57,6 @@ void addRunning(CLI::App& app, WorldsOptions& options)
         ->check(CLI::Validator(numberAbove(0, false, "more than 0"), ""));
     app.add_option("--most-failing", options.m_mostFailing,
                    "largest number of failing worlds that still ends with exit code 0");
-    app.add_option("--most-failing-at-end", options.m_mostFailingAtEnd,
-                   "largest number of worlds failing in their last step that still ends with exit code 0");
     app.add_flag("--list", options.m_list, "list kinds and modifiers, and exit");
     app.add_flag("--verbose", options.m_verbose,
                  "print a line for every world; with a single world also for every step");

@@ -17,7 +17,6 @@ struct WorldsOptions
     int m_jobs = 1;
     double m_timeout = 60;  // s
     std::size_t m_mostFailing = 0;
-    std::size_t m_mostFailingAtEnd = ~std::size_t(0);
     bool m_list = false;
     bool m_verbose = false;
 };

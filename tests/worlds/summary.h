@@ -15,7 +15,6 @@ public:
 
     // Counts failed, crashed and timed-out worlds.
     std::size_t failing() const { return m_failing; }
-    std::size_t failingAtEnd() const { return m_failingAtEnd; }
     std::size_t startIntersecting() const { return m_startIntersecting; }
     std::size_t worlds() const { return m_worlds; }
     std::string text() const;
