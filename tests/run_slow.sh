@@ -7,7 +7,7 @@
 #
 #   --jobs N              processes at a time (as many as there are cores)
 #   --plain-failing N     the most worlds that may fail of 4,000 without modifiers (0)
-#   --modified-failing N  the most of 4,000 with random modifiers (1 with Bullet's links, which takes too long; 0 with Drape's)
+#   --modified-failing N  the most of 4,000 with random modifiers (0; 1 with Bullet's links, which takes too long)
 #   --tiny-failing N      the most of 300,000 tiny ones (11)
 #   --ropes-failing N     the most of 2,000 with ropes (0)
 #   --skirts-failing N    the most of the two grids' 354 skirts (0)
