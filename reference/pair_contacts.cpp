@@ -1,7 +1,7 @@
 #include "reference/pair_contacts.h"
 
 #include "bullet_plugin/core/ordering/canonical_order.h"
-#include "kernels/lib/triangle_triangle.h"
+#include "kernels/lib/queries/triangle_triangle.h"
 
 namespace drape
 {

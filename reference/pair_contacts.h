@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "bullet_plugin/core/scene/mesh_pool.h"
-#include "kernels/lib/pair_contact.h"
+#include "kernels/lib/narrow_phase/pair_contact.h"
 
 namespace drape
 {

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "bullet_plugin/core/queries/bvh_layout.h"
+#include "bullet_plugin/core/probe/bvh_layout.h"
 #include "kernels/shared/contact.h"
 #include "bullet_plugin/core/cloth_cloth/self_step.h"
 

@@ -6,7 +6,7 @@
 #include "benchmarks/error_vs_time/detector_rows.h"
 #include "benchmarks/error_vs_time/distance_sets.h"
 #include "benchmarks/support/result_hash.h"
-#include "kernels/lib/pair_contact.h"
+#include "kernels/lib/narrow_phase/pair_contact.h"
 
 namespace drape::bench
 {

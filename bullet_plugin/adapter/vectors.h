@@ -2,7 +2,7 @@
 #pragma once
 
 #include "LinearMath/btTransform.h"
-#include "kernels/lib/vec3.h"
+#include "kernels/lib/geometry/vec3.h"
 
 namespace drape
 {

@@ -2,7 +2,7 @@
 #ifndef DRAPE_BROAD_PHASE_VIEWS_H
 #define DRAPE_BROAD_PHASE_VIEWS_H
 
-#include "../lib/arena_views.h"
+#include "../lib/step_data/arena_views.h"
 #include "broad_phase_bindings.h"
 
 static StepCloths stepCloths(const CullValues* values, __global const float* nodes, __global const ClothWord* cloths,

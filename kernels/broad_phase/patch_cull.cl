@@ -2,8 +2,8 @@
 // patches with their joint volume. For each patch found, the packet's triangles are tested: their nodes and edges
 // that may be near the patch, and their faces, against the patch's features, a vector of lanes at a time. The
 // remaining feature tests are listed.
-#include "../lib/cull_packet.h"
-#include "../lib/patch_pairs.h"
+#include "../lib/broad_phase/cull_packet.h"
+#include "../lib/broad_phase/patch_pairs.h"
 
 // Rows of the six corners of a packet's triangles, see cornersSeen(): one row of lanes for each x, y and z.
 #define DRAPE_CORNER_ROWS 18

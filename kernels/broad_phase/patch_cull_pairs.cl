@@ -2,7 +2,7 @@
 // patch has some hundred features, and a cloth triangle is seldom near them all. A group therefore first finds, for
 // each of its pairs, the near parts of the patch's blocks. It then tests these alone, as many side by side as it has
 // lanes.
-#include "../lib/patch_pairs.h"
+#include "../lib/broad_phase/patch_pairs.h"
 
 // Pairs that a group takes at a time, each with a lane to prepare it.
 #define DRAPE_CULL_PAIRS 32

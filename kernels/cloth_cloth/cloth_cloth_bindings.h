@@ -1,8 +1,8 @@
 // Arguments of the kernels of cloths with themselves (shared/bindings.h).
 //
 // nodes, cloths, patches: see shared/arenas.h; rest: m, x y z per node. radius, thickness, obstacleRadius: see
-// SelfRadii. pairs: of patches, listed by selfWalk. tests, list: self tests (lib/self_contact.h). contacts, ranks,
-// featureCounts: see ContactSink. swept: tests that the continuous test decides.
+// SelfRadii. pairs: of patches, listed by selfWalk. tests, list: self tests (lib/cloth_cloth/self_contact.h). contacts,
+// ranks, featureCounts: see ContactSink. swept: tests that the continuous test decides.
 #ifndef DRAPE_CLOTH_CLOTH_BINDINGS_H
 #define DRAPE_CLOTH_CLOTH_BINDINGS_H
 

@@ -1,7 +1,7 @@
 // Packs the cloths' own patches over a step, for cloths that collide with themselves: the patches' volumes and their
 // nodes' boxes. self_pack_simd.cl is the CPU's version.
-#include "../lib/invalid_nodes.h"
-#include "../lib/self_cull.h"
+#include "../lib/cloth_cloth/invalid_nodes.h"
+#include "../lib/cloth_cloth/self_cull.h"
 #include "self_arena_views.h"
 
 // Stores the box by node: groups join the boxes of the features that they meet.

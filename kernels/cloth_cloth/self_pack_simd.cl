@@ -1,10 +1,10 @@
 // The CPU version of self_pack.cl: a work-item packs a patch, a vector of its features at a time, and also writes the
 // features' boxes.
-#include "../lib/cull_packet.h"
-#include "../lib/invalid_nodes.h"
-#include "../lib/self_cull.h"
-#include "../lib/self_views.h"
-#include "../lib/simd_group.h"
+#include "../lib/broad_phase/cull_packet.h"
+#include "../lib/cloth_cloth/invalid_nodes.h"
+#include "../lib/cloth_cloth/self_cull.h"
+#include "../lib/cloth_cloth/self_views.h"
+#include "../lib/work_items/simd_group.h"
 
 // Rows of a node of each lane's feature: x y z at the step's start and at its end.
 #define DRAPE_NODE_ROWS (6 * DRAPE_LANES)

@@ -1,9 +1,9 @@
 // Broad phase of cloths with themselves on a GPU, in two launches. In the first, every patch traverses the wide tree
 // and lists itself and later patches whose volumes overlap its own. In the second, groups share these pairs of patches.
 // The output is pairs of features whose volumes over the step overlap, each once.
-#include "../lib/self_pairs.h"
-#include "../lib/self_views.h"
-#include "../lib/wide_walk.h"
+#include "../lib/cloth_cloth/self_pairs.h"
+#include "../lib/cloth_cloth/self_views.h"
+#include "../lib/broad_phase/wide_walk.h"
 #include "self_arena_views.h"
 
 // Pairs of patches that a group gathers before it reserves room for them.
@@ -44,7 +44,8 @@ static int listPatches(__local SelfWalker* walker, const uint own, __global Cand
 }
 
 // Lists the pairs of a patch, one patch per work-group. The tree's volumes are those of selfPack, joined by patchWiden.
-// radius: see selfPack. Past the limit a group ends: see lib/simd_group.h. counters->m_selfPairs must be zero before.
+// radius: see selfPack. Past the limit a group ends: see lib/work_items/simd_group.h. counters->m_selfPairs must be
+// zero before.
 __kernel __attribute__((reqd_work_group_size(DRAPE_WALK_NODES * DRAPE_PATCH_WIDTH, 1, 1))) void selfWalk(
     DRAPE_SELF_WALK)
 {
@@ -347,8 +348,8 @@ static int listNear(__local SelfCuller* culler, const SelfCloth* cloth, const Te
     return within;
 }
 
-// Lists the self tests of the pairs of patches in selfWalk's list. limit: see lib/simd_group.h; counters->m_selfTests
-// must be zero before.
+// Lists the self tests of the pairs of patches in selfWalk's list. limit: see lib/work_items/simd_group.h;
+// counters->m_selfTests must be zero before.
 __kernel __attribute__((reqd_work_group_size(DRAPE_WALK_NODES * DRAPE_PATCH_WIDTH, 1, 1))) void selfCullPairs(
     DRAPE_SELF_CULL_PAIRS)
 {

@@ -1,5 +1,5 @@
 // Narrow phase over pairs of features. Launches have a fixed width: the list's length is only on the device.
-#include "../lib/feature_tests.h"
+#include "../lib/narrow_phase/feature_tests.h"
 
 #ifndef DRAPE_CPU
 // Work-items of a group (kFeatureGroupGpu in narrow_phase.cpp).
@@ -72,7 +72,7 @@ static void runSweptTests(const FeatureInput* input, const ContactSink* sink, __
 }
 
 #ifdef __OPENCL_VERSION__
-#include "../lib/arena_views.h"
+#include "../lib/step_data/arena_views.h"
 #include "narrow_phase_bindings.h"
 
 static FeatureInput featureInput(const FeatureValues* values, __global const FeatureTest* tests, const uint count,

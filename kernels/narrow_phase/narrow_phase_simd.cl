@@ -1,8 +1,8 @@
 // Narrow phase over pairs of features on a CPU. A work-item sorts a run of tests by kind, and runs as many of one kind
 // side by side as a vector has lanes.
-#include "../lib/prefetch.h"
-#include "../lib/feature_tests.h"
-#include "../lib/lane_runs.h"
+#include "../lib/work_items/prefetch.h"
+#include "../lib/narrow_phase/feature_tests.h"
+#include "../lib/narrow_phase/lane_runs.h"
 
 struct LaneWork
 {
@@ -179,7 +179,7 @@ static void runFeatureTests(const FeatureInput* input, const ContactSink* sink, 
 }
 
 #ifdef __OPENCL_VERSION__
-#include "../lib/arena_views.h"
+#include "../lib/step_data/arena_views.h"
 #include "narrow_phase_bindings.h"
 
 // Runs the feature tests that patchCull lists.

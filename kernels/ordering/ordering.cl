@@ -3,11 +3,11 @@
 // The method is a counting sort over the features: sums per block, the first position of every feature, the members of
 // every feature, and the position of each contact among them. That position comes from counting where a feature has few
 // members, from a sort where it has many. On a GPU, few features take one or two launches less (ordering_small.cl).
-#include "../lib/prefetch.h"
-#include "../lib/group_scan.h"
-#include "../lib/item_runs.h"
-#include "../lib/list_contacts.h"
-#include "../lib/member_order.h"
+#include "../lib/work_items/prefetch.h"
+#include "../lib/work_items/group_scan.h"
+#include "../lib/work_items/item_runs.h"
+#include "../lib/narrow_phase/list_contacts.h"
+#include "../lib/ordering/member_order.h"
 #include "ordering_bindings.h"
 
 // Features per work-group. Each work-item takes DRAPE_BLOCK / group size adjacent ones.

@@ -1,6 +1,6 @@
 // Does the work of two or three launches of ordering.cl in one, for few features on a GPU: every work-item sums the
 // features before its own.
-#include "../lib/list_contacts.h"
+#include "../lib/narrow_phase/list_contacts.h"
 #include "ordering_bindings.h"
 
 // Stores where a feature's contacts begin, and records whether they exceed `ranked`.

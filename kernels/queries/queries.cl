@@ -1,7 +1,7 @@
 // Answers callers' queries about single pairs: continuous collision of four moving vertices, intersection of two
 // triangles.
-#include "../lib/ccd.h"
-#include "../lib/triangle_pair.h"
+#include "../lib/ccd/ccd.h"
+#include "../lib/queries/triangle_pair.h"
 #include "queries_bindings.h"
 
 static void loadPoints(Vec3* points, __global const float* coordinates, const uint count)

@@ -5,7 +5,7 @@
 #ifndef DRAPE_QUERIES_BINDINGS_H
 #define DRAPE_QUERIES_BINDINGS_H
 
-#include "../lib/dop.h"
+#include "../lib/geometry/dop.h"
 #include "../shared/bindings.h"
 #include "../shared/mesh.h"
 #include "../shared/query.h"

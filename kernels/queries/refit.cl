@@ -1,5 +1,5 @@
 // Refit: recomputes the volumes of a hierarchy whose topology stays. Nodes lie by height, the root last.
-#include "../lib/dop.h"
+#include "../lib/geometry/dop.h"
 #include "queries_bindings.h"
 
 // A work-item is a leaf, whose node has its number. Reads the triangle's vertices at the step's start and end, writes

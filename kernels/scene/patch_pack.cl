@@ -1,8 +1,8 @@
 // Packs the obstacles' features for the culls (patch_cull.cl, patch_cull_pairs.cl), and the wide tree over their
 // patches, after an obstacle was added or moved.
-#include "../lib/cone_reach.h"
-#include "../lib/feature_cull.h"
-#include "../lib/step_views.h"
+#include "../lib/broad_phase/cone_reach.h"
+#include "../lib/broad_phase/feature_cull.h"
+#include "../lib/step_data/step_views.h"
 
 // Positions that are invalid become NaN.
 static Vec3 packedPosition(__global const float* positions, const uint vertex, const int used)
@@ -205,7 +205,7 @@ static void widenChild(__global float* wideNodes, const uint below, const uint n
 }
 
 #ifdef __OPENCL_VERSION__
-#include "../lib/arena_views.h"
+#include "../lib/step_data/arena_views.h"
 #include "scene_bindings.h"
 
 // Packs a lane per work-item, from values.m_first up to m_last.

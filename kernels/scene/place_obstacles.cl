@@ -1,5 +1,5 @@
 // Transforms obstacles from their own frames to the world's.
-#include "../lib/rigid_motion.h"
+#include "../lib/geometry/rigid_motion.h"
 #include "scene_bindings.h"
 
 // Places a given vertex, then a given edge, per work-item. Reads a feature's position and cone in its own frame and

@@ -11,7 +11,8 @@ DRAPE_NAMESPACE_BEGIN
 #define DRAPE_NODE_FACE 0u
 #define DRAPE_FACE_VERTEX 1u
 #define DRAPE_EDGE_EDGE 2u
-// Contacts of a cloth with itself (lib/self_contact.h): another feature of the cloth takes the obstacle's part.
+// Contacts of a cloth with itself (lib/cloth_cloth/self_contact.h): another feature of the cloth takes the obstacle's
+// part.
 #define DRAPE_SELF_NODE_FACE 3u
 #define DRAPE_SELF_EDGE_EDGE 4u
 

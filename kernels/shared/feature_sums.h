@@ -1,4 +1,4 @@
-// Sums over the numbers of contacts of cloth features (kernels/lib/feature_sums.h), for few features.
+// Sums over the numbers of contacts of cloth features (kernels/lib/ordering/feature_sums.h), for few features.
 #ifndef DRAPE_SHARED_FEATURE_SUMS_H
 #define DRAPE_SHARED_FEATURE_SUMS_H
 

@@ -1,4 +1,4 @@
-// Nodes of cloths that stay on a device between steps (core/solver/kept_nodes.h). SI units.
+// Nodes of cloths that stay on a device between steps (core/solver/device/kept_nodes.h). SI units.
 #ifndef DRAPE_SHARED_KEPT_NODES_H
 #define DRAPE_SHARED_KEPT_NODES_H
 

@@ -32,7 +32,7 @@ typedef struct Patch
 // face's edges or corners admits. DRAPE_ANY_SPREAD: no bound; cones admit directions in or near the face's plane.
 #define DRAPE_ANY_SPREAD 1e18f
 // Size of a child of a wide node: for every direction low, high, and the reach of a contact as a share of the full
-// reach (lib/cone_reach.h).
+// reach (lib/broad_phase/cone_reach.h).
 #define DRAPE_WIDE_NODE_FLOATS (3 * DRAPE_DOP_DIRECTIONS)
 
 // Size of a feature's box over the step, low then high, of a cloth that collides with itself.
@@ -52,7 +52,7 @@ typedef struct Patch
 // A feature test that the cull could not drop: a cloth triangle with the test in its upper bits, and an obstacle
 // lane. Lanes are of faces (tests 0 to 2: corner of the cloth triangle), vertices (3) or edges (4 to 6: edge of the
 // cloth triangle). The record also stores a pair of a cloth triangle and a patch, with the patch's index in place of
-// the lane, and a pair of features of one cloth (lib/self_contact.h).
+// the lane, and a pair of features of one cloth (lib/cloth_cloth/self_contact.h).
 typedef struct FeatureTest
 {
     DRAPE_UINT m_cloth;

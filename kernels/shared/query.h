@@ -23,7 +23,7 @@ typedef struct FeatureHit
     float m_time;  // time of impact, fraction of the step
 } FeatureHit;
 
-// A pair of triangles that meets or is near, as bits of kernels/lib/triangle_pair.h.
+// A pair of triangles that meets or is near, as bits of kernels/lib/queries/triangle_pair.h.
 typedef struct PairAnswer
 {
     DRAPE_UINT m_a;

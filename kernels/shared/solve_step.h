@@ -1,7 +1,7 @@
 // Records of a cloth step on a device (solver/). SI units.
 //
 // All cloths of a step share the arrays. A cloth's nodes are adjacent, sorted by the leaves of its parts
-// (core/solver/cloth_parts.h). Indices of nodes count from the cloth's first node, all others over all cloths.
+// (core/solver/topology/cloth_parts.h). Indices of nodes count from the cloth's first node, all others over all cloths.
 #ifndef DRAPE_SHARED_SOLVE_STEP_H
 #define DRAPE_SHARED_SOLVE_STEP_H
 
@@ -17,7 +17,7 @@ DRAPE_NAMESPACE_BEGIN
 #define DRAPE_SOLVE_JOIN_GROUP 128  // for groups that join leaves
 #define DRAPE_SOLVE_CPU_GROUP 1
 
-// Maximum closing sweeps (lib/closing_sweeps.h).
+// Maximum closing sweeps (lib/solver/closing_sweeps.h).
 #define DRAPE_CLOSING_SWEEPS 128
 
 // Words of the three arenas (shared/arenas.h) that hold the step's input, the topology and the working memory.

@@ -1,7 +1,7 @@
 // Predicts cloths whose nodes stay on the device, with the bits of the adapter's prediction, and keeps their results.
 //
 // Work-items share the nodes of each cloth: as many of them as launch.m_lanes.
-#include "../lib/vec3.h"
+#include "../lib/geometry/vec3.h"
 #include "solver_bindings.h"
 
 typedef struct Predicted

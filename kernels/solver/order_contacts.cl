@@ -4,8 +4,8 @@
 // The contacts of a feature stay adjacent and in their order. Where a feature's contacts are in their bucket depends on
 // the order of work-items, and no result depends on it.
 #define DRAPE_NODE_SPACE __global
-#include "../lib/closing_sweeps.h"
-#include "../lib/vec3.h"
+#include "../lib/solver/closing_sweeps.h"
+#include "../lib/geometry/vec3.h"
 #include "solver_bindings.h"
 
 // Maximum contacts of a feature, see DRAPE_ROUND_TAG().

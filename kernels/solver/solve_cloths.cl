@@ -4,10 +4,10 @@
 // Links of one colour and features of one bucket share no node, so a group's work-items visit them side by side;
 // colours, buckets and passes are separated by barriers. The result is the host's, bit for bit.
 #define DRAPE_NODE_SPACE __local
-#include "../lib/solve_limits.h"
-#include "../lib/solve_links.h"
-#include "../lib/solve_nodes.h"
-#include "../lib/solve_passes.h"
+#include "../lib/solver/solve_limits.h"
+#include "../lib/solver/solve_links.h"
+#include "../lib/solver/solve_nodes.h"
+#include "../lib/solver/solve_passes.h"
 #include "solver_bindings.h"
 
 // Opens the group of the work-group's number in the list of groups by level.

@@ -1,11 +1,11 @@
 // Passes of a step over large cloths: over groups that join leaves, and over the nodes of leaves. Nodes are in global
-// memory; core/solver/solve_stage.h tells the order of passes.
+// memory; core/solver/device/solve_stage.h tells the order of passes.
 #define DRAPE_NODE_SPACE __global
 #define DRAPE_GLOBAL_NODES
-#include "../lib/solve_limits.h"
-#include "../lib/solve_links.h"
-#include "../lib/solve_nodes.h"
-#include "../lib/solve_passes.h"
+#include "../lib/solver/solve_limits.h"
+#include "../lib/solver/solve_links.h"
+#include "../lib/solver/solve_nodes.h"
+#include "../lib/solver/solve_passes.h"
 #include "solver_bindings.h"
 
 // Opens the group of the work-group's number in the list of groups by level.

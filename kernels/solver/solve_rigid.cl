@@ -2,7 +2,7 @@
 // node, where no body moves, or else all that share bodies or nodes, in the host's order. The result is the host's,
 // bit for bit.
 #define DRAPE_NODE_SPACE __global
-#include "../lib/rigid_row.h"
+#include "../lib/solver/rigid_row.h"
 #include "solver_bindings.h"
 
 // Takes the bodies, and what cloths gave to them, as the step begins.

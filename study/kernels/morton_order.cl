@@ -1,5 +1,5 @@
 // Morton codes of the triangles' centroids: what leaves are sorted by.
-#include "../../kernels/lib/triangle_order.h"
+#include "../../kernels/lib/geometry/triangle_order.h"
 #include "lib/morton_wide.h"
 
 #define DRAPE_BOUNDS_GROUP 64

@@ -1,9 +1,9 @@
 // Narrow phase over pairs of triangles: contacts of the candidates' features. Launches have a fixed width: the list's
 // length is only on the device.
-#include "../../kernels/lib/arena_views.h"
-#include "../../kernels/lib/item_runs.h"
-#include "../../kernels/lib/list_contacts.h"
-#include "../../kernels/lib/pair_contact.h"
+#include "../../kernels/lib/step_data/arena_views.h"
+#include "../../kernels/lib/work_items/item_runs.h"
+#include "../../kernels/lib/narrow_phase/list_contacts.h"
+#include "../../kernels/lib/narrow_phase/pair_contact.h"
 #include "narrow_phase_pairs_bindings.h"
 
 // A work-item goes through its part of the candidates, runs their feature tests and lists the contacts.

@@ -1,6 +1,6 @@
 // Clustering of triangles in Morton order to a tree. Rounds are launched in batches without asking the device: rounds[2
 // k] is how many clusters round k starts with, rounds[2 k + 1] how many were made before it.
-#include "../../kernels/lib/group_scan.h"
+#include "../../kernels/lib/work_items/group_scan.h"
 #include "lib/ploc.h"
 #include "ploc_bindings.h"
 

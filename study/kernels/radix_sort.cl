@@ -2,7 +2,7 @@
 //
 // Two shapes with the same result: for GPUs a work-group sorts a tile in local memory before it scatters, so that
 // writes come in runs; for CPUs a work-item counts and moves a long stretch alone.
-#include "../../kernels/lib/group_scan.h"
+#include "../../kernels/lib/work_items/group_scan.h"
 #include "../../kernels/shared/types.h"
 
 #define DRAPE_RADIX_DIGITS 256u

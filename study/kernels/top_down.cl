@@ -1,7 +1,7 @@
 // Construction from the root down, a level at a time: the root, a work-group or a work-item per node, and the
 // compaction of the queue. Large nodes are in top_down_large.cl. See lib/top_down.h for how a node is split.
 #include "lib/group_reduce.h"
-#include "../../kernels/lib/group_scan.h"
+#include "../../kernels/lib/work_items/group_scan.h"
 #include "lib/top_down.h"
 #include "top_down_bindings.h"
 

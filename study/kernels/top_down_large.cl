@@ -1,7 +1,7 @@
 // Construction from the root down: nodes so large that many work-groups split one, in pairs of kernels. The first of a
 // pair works on blocks of a node's triangles, the second puts the blocks' results together.
 #include "lib/group_reduce.h"
-#include "../../kernels/lib/group_scan.h"
+#include "../../kernels/lib/work_items/group_scan.h"
 #include "lib/top_down.h"
 
 // A work-group's share of a large node: triangles m_first … m_end - 1 of the order, of the m_node-th large node, whose

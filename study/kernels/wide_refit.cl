@@ -1,6 +1,6 @@
 // Leaves of a tree of nodes with two to four children, or with bundles of leaves; kernels/queries/refit.cl has the
 // nodes above.
-#include "../../kernels/lib/dop.h"
+#include "../../kernels/lib/geometry/dop.h"
 
 // A work-item is a node; the leaves' volumes are made from their triangles, without a radius.
 __kernel void refitWideLeaves(__global BvhNode* restrict nodes, __global const uint* restrict order,

@@ -7,7 +7,7 @@
 #include "benchmarks/support/machine.h"
 #include "benchmarks/support/result_hash.h"
 #include "bullet_plugin/core/device/bound_kernel.h"
-#include "kernels/lib/triangle_pair.h"
+#include "kernels/lib/queries/triangle_pair.h"
 #include "kernels/queries/queries_bindings.h"
 #include "study/kernels/lib/moller.h"
 #include "scenes/random.h"

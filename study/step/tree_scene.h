@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "bullet_plugin/core/scene/mesh_pool.h"
-#include "kernels/lib/pair_contact.h"
+#include "kernels/lib/narrow_phase/pair_contact.h"
 #include "scenes/mesh.h"
 #include "study/trees/tree.h"
 #include "study/methods.h"

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "bullet_plugin/core/queries/bvh_layout.h"
+#include "bullet_plugin/core/probe/bvh_layout.h"
 #include "tests/support/cases.h"
 
 namespace drape::test

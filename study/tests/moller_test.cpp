@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "kernels/lib/triangle_pair.h"
+#include "kernels/lib/queries/triangle_pair.h"
 #include "tests/support/cases.h"
 #include "tests/support/random_pair.h"
 

@@ -4,7 +4,7 @@
 #include <numeric>
 
 #include "bullet_plugin/core/scene/morton_order.h"
-#include "kernels/lib/triangle_order.h"
+#include "kernels/lib/geometry/triangle_order.h"
 #include "study/kernels/lib/morton_wide.h"
 
 namespace drape

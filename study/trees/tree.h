@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "bullet_plugin/core/device/buffer.h"
-#include "bullet_plugin/core/queries/bvh_layout.h"
+#include "bullet_plugin/core/probe/bvh_layout.h"
 #include "study/kernels/lib/tree_layout.h"
 
 namespace drape

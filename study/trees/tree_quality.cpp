@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "kernels/lib/dop.h"
+#include "kernels/lib/geometry/dop.h"
 #include "study/kernels/lib/tree_layout.h"
 
 namespace drape

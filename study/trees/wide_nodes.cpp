@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "kernels/lib/dop.h"
+#include "kernels/lib/geometry/dop.h"
 
 namespace drape
 {

@@ -1,5 +1,5 @@
 // Exchange of nodes between a soft body and the solver: paths, ends, and what is written back.
-#include "bullet_plugin/adapter/body_nodes.h"
+#include "bullet_plugin/adapter/solver/body_nodes.h"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "BulletSoftBody/btSoftBodyHelpers.h"
-#include "bullet_plugin/adapter/mirrors.h"
+#include "bullet_plugin/adapter/mirrors/mirrors.h"
 #include "scenes/shapes.h"
 #include "tests/bullet/drop_world.h"
 #include "tests/support/backends.h"

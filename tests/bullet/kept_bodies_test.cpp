@@ -4,7 +4,7 @@
 #include <functional>
 #include <memory>
 
-#include "kernels/lib/vec3.h"
+#include "kernels/lib/geometry/vec3.h"
 #include "scenes/shapes.h"
 #include "tests/bullet/drop_world.h"
 #include "tests/support/backends.h"

@@ -1,7 +1,7 @@
 // The motion of a kinematic body within a step, derived from Bullet's poses and velocities.
 #include <gtest/gtest.h>
 
-#include "bullet_plugin/adapter/kinematic_motion.h"
+#include "bullet_plugin/adapter/motion/kinematic_motion.h"
 #include "tests/bullet/kinematic_scene.h"
 
 namespace drape::test

@@ -1,5 +1,5 @@
 // Bullet's mesh formats give equal triangles: types and strides of vertices and indices, parts, wrong counts.
-#include "bullet_plugin/adapter/mesh_reader.h"
+#include "bullet_plugin/adapter/mirrors/mesh_reader.h"
 
 #include <gtest/gtest.h>
 

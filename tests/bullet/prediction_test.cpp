@@ -6,8 +6,8 @@
 #include <limits>
 
 #include "BulletSoftBody/btSoftBodyHelpers.h"
-#include "bullet_plugin/adapter/node_tree.h"
-#include "bullet_plugin/adapter/prediction.h"
+#include "bullet_plugin/adapter/motion/node_tree.h"
+#include "bullet_plugin/adapter/motion/prediction.h"
 #include "scenes/shapes.h"
 #include "tests/bullet/drop_world.h"
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "BulletSoftBody/btSoftBodyHelpers.h"
-#include "bullet_plugin/adapter/solid_links.h"
+#include "bullet_plugin/adapter/mirrors/solid_links.h"
 #include "oracle/crossings.h"
 #include "tests/bullet/drop_world.h"
 #include "tests/support/backends.h"

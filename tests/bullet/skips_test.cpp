@@ -7,7 +7,7 @@
 #include <cstring>
 #include <functional>
 
-#include "bullet_plugin/adapter/plugin_state.h"
+#include "bullet_plugin/adapter/wiring/plugin_state.h"
 #include "scenes/shapes.h"
 #include "tests/bullet/drop_world.h"
 #include "tests/support/backends.h"

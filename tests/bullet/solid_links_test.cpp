@@ -1,5 +1,5 @@
 // Finds the links of a soft body that collide, and notices changes in place.
-#include "bullet_plugin/adapter/solid_links.h"
+#include "bullet_plugin/adapter/mirrors/solid_links.h"
 
 #include <gtest/gtest.h>
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "bullet_plugin/adapter/stretch.h"
+#include "bullet_plugin/adapter/collision/stretch.h"
 #include "bullet_plugin/core/backends/ordinary_tests.h"
 #include "scenes/random.h"
 #include "scenes/shapes.h"

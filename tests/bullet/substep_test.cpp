@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "BulletSoftBody/btSoftBodyHelpers.h"
-#include "bullet_plugin/adapter/substep_body.h"
+#include "bullet_plugin/adapter/solver/substep_body.h"
 #include "scenes/shapes.h"
 #include "tests/bullet/drop_world.h"
 #include "tests/support/backends.h"

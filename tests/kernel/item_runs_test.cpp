@@ -39,7 +39,8 @@ class Taking
 public:
     Taking(Device& device, const std::string& defines) : m_device(device)
     {
-        m_program = compileSource(device, "item_runs", defines + assembleSource("kernels/lib/item_runs.h") + kTake);
+        m_program =
+            compileSource(device, "item_runs", defines + assembleSource("kernels/lib/work_items/item_runs.h") + kTake);
         m_kernel.create(device, m_program, "takeItems");
     }
 

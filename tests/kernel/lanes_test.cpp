@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "bullet_plugin/core/scene/patch_width.h"
-#include "kernels/lib/lanes.h"
+#include "kernels/lib/work_items/lanes.h"
 #include "tests/support/device_side.h"
 
 namespace drape::test
@@ -42,7 +42,8 @@ class LanesTest : public DeviceTest
 
 TEST_P(LanesTest, RootsErrByLessThanTheCullsAllow)
 {
-    const std::string source = patchDefines(*m_device) + assembleSource("kernels/lib/lanes.h") + rootsOf(*m_device);
+    const std::string source =
+        patchDefines(*m_device) + assembleSource("kernels/lib/work_items/lanes.h") + rootsOf(*m_device);
     const cl::Program program = compileSource(*m_device, "lanes", source);
     ASSERT_FALSE(m_device->failed()) << m_device->error().text();
     Kernel kernel;

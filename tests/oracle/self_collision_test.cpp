@@ -5,7 +5,7 @@
 #include <array>
 #include <set>
 
-#include "kernels/lib/ccd.h"
+#include "kernels/lib/ccd/ccd.h"
 #include "oracle/exact_predicates.h"
 #include "tests/support/backends.h"
 #include "tests/support/oracle.h"

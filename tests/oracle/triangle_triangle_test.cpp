@@ -1,5 +1,5 @@
 // The triangle test against exact arithmetic: an intersecting pair is never missed, false hits stay rare.
-#include "kernels/lib/triangle_triangle.h"
+#include "kernels/lib/queries/triangle_triangle.h"
 
 #include <gtest/gtest.h>
 

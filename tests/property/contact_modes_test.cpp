@@ -266,7 +266,7 @@ TEST_P(ContactModesTest, FaceThatPassesAndTiltsBackIsFound)
         {
             if (contact.m_kind != DRAPE_FACE_VERTEX || contact.m_obstacleFeature != 4) continue;
             ++found;
-            // 0.1 - 0.7 t + 0.8 t² = 0; see kernels/lib/feature_meeting.h for how early a time may be.
+            // 0.1 - 0.7 t + 0.8 t² = 0; see kernels/lib/narrow_phase/feature_meeting.h for how early a time may be.
             EXPECT_LE(contact.m_time, 0.179844f + 1e-5f);
             EXPECT_GT(contact.m_time, 0.179844f - 2.05f * 0.01f * 0.03f / 2);
             EXPECT_GT(contact.m_normal[1], 0.9f);

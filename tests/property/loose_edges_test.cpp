@@ -8,7 +8,7 @@
 #include <set>
 #include <utility>
 
-#include "bullet_plugin/core/queries/exact/triangles.h"
+#include "bullet_plugin/core/exact/triangles.h"
 #include "bullet_plugin/core/scene/topology.h"
 #include "scenes/describe_mesh.h"
 #include "tests/support/backends.h"

@@ -8,7 +8,7 @@
 #include <memory>
 #include <vector>
 
-#include "kernels/lib/rigid_motion.h"
+#include "kernels/lib/geometry/rigid_motion.h"
 #include "tests/property/moving_obstacle.h"
 #include "tests/support/side.h"
 

@@ -4,7 +4,7 @@
 
 #include <set>
 
-#include "kernels/lib/ccd.h"
+#include "kernels/lib/ccd/ccd.h"
 #include "scenes/cloth_grid.h"
 #include "oracle/exact_predicates.h"
 #include "scenes/shapes.h"

@@ -1,8 +1,9 @@
 // Finds the contacts that a step at rest must report, by brute force in double precision over all features.
 //
-// The conditions are those of kernels/lib/feature_contact.h: within reach and locally closest. Only pairs that satisfy
-// them strictly, by the margins below, are required. At a seam between two features rounding decides which of them
-// reports, and both answers are correct. Own code; see oracle.h. Lengths in metres. O(features²) with a box test first.
+// The conditions are those of kernels/lib/narrow_phase/feature_contact.h: within reach and locally closest. Only pairs
+// that satisfy them strictly, by the margins below, are required. At a seam between two features rounding decides which
+// of them reports, and both answers are correct. Own code; see oracle.h. Lengths in metres. O(features²) with a box
+// test first.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Expected results of kernels/lib/feature_sums.h.
+// Expected results of kernels/lib/ordering/feature_sums.h.
 #pragma once
 
 #include <vector>

@@ -1,7 +1,7 @@
 // Random pairs of triangles, and how far apart they are.
 #pragma once
 
-#include "kernels/lib/triangle_pair.h"
+#include "kernels/lib/queries/triangle_pair.h"
 #include "tests/support/cases.h"
 #include "tests/support/oracle.h"
 

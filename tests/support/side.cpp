@@ -8,7 +8,7 @@
 #include "bullet_plugin/core/queries/refit.h"
 #include "bullet_plugin/core/ordering/canonical_order.h"
 #include "bullet_plugin/core/scene/normal_cones.h"
-#include "kernels/lib/dop.h"
+#include "kernels/lib/geometry/dop.h"
 
 namespace drape::test
 {

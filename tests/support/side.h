@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "bullet_plugin/core/queries/bvh_layout.h"
+#include "bullet_plugin/core/probe/bvh_layout.h"
 #include "bullet_plugin/core/scene/mesh_pool.h"
 #include "reference/pair_contacts.h"
 #include "scenes/mesh.h"

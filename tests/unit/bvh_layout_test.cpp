@@ -1,5 +1,5 @@
 // Layout of the hierarchy: every leaf reachable once, links consistent, height logarithmic.
-#include "bullet_plugin/core/queries/bvh_layout.h"
+#include "bullet_plugin/core/probe/bvh_layout.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // Continuous collision of single pairs: no touch is missed, times are never late, and the answer depends on nothing but
 // the shape.
-#include "kernels/lib/ccd.h"
+#include "kernels/lib/ccd/ccd.h"
 
 #include <gtest/gtest.h>
 

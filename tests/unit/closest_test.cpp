@@ -1,5 +1,5 @@
-// kernels/lib/closest.h against the double oracle, on random and degenerate features.
-#include "kernels/lib/closest.h"
+// kernels/lib/geometry/closest.h against the double oracle, on random and degenerate features.
+#include "kernels/lib/geometry/closest.h"
 
 #include <gtest/gtest.h>
 

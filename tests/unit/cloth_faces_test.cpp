@@ -1,5 +1,5 @@
 // Finds the faces of each node, compared with a search of all faces.
-#include "bullet_plugin/core/solver/cloth_faces.h"
+#include "bullet_plugin/core/solver/topology/cloth_faces.h"
 
 #include <gtest/gtest.h>
 

@@ -5,8 +5,8 @@
 #include <set>
 #include <vector>
 
-#include "bullet_plugin/core/solver/cloth_parts.h"
-#include "kernels/lib/vec3.h"
+#include "bullet_plugin/core/solver/topology/cloth_parts.h"
+#include "kernels/lib/geometry/vec3.h"
 #include "scenes/cloth_grid.h"
 #include "tests/support/cases.h"
 

@@ -1,5 +1,5 @@
 // The reach of contacts whose directions lie in a cone, along the volumes' directions.
-#include "kernels/lib/cone_reach.h"
+#include "kernels/lib/broad_phase/cone_reach.h"
 
 #include <gtest/gtest.h>
 

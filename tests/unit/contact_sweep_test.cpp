@@ -1,7 +1,7 @@
 // Contact sweeps that skip most contacts and run on several threads equal sweeps that project every contact in turn,
 // bit for bit.
 #include "bullet_plugin/core/scene/mesh_pool.h"
-#include "bullet_plugin/core/solver/contact_sweep.h"
+#include "bullet_plugin/core/solver/host/contact_sweep.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Volumes of packets, a lane at a time: as those of single triangles, never smaller. Those of their nodes and edges.
-#include "kernels/lib/cull_packet.h"
+#include "kernels/lib/broad_phase/cull_packet.h"
 
 #include <gtest/gtest.h>
 

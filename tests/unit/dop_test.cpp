@@ -1,5 +1,5 @@
 // 18-DOP volumes: they hold what they must in exact arithmetic, overlap is symmetric, invalid input empties them.
-#include "kernels/lib/dop.h"
+#include "kernels/lib/geometry/dop.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@ namespace drape::test
 {
 namespace
 {
-// The directions of kernels/lib/dop.h, for every number of sides.
+// The directions of kernels/lib/geometry/dop.h, for every number of sides.
 const int kAxes[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
 const int kEdges[6][3] = {{1, 1, 0}, {1, 0, 1}, {0, 1, 1}, {1, -1, 0}, {1, 0, -1}, {0, 1, -1}};
 const int kCorners[4][3] = {{1, 1, 1}, {1, 1, -1}, {1, -1, 1}, {1, -1, -1}};

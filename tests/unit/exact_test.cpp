@@ -1,9 +1,9 @@
 // Exact answers about triangles: against rational arithmetic of another hand, on inputs where doubles do not decide.
-#include "bullet_plugin/core/queries/exact/triangles.h"
+#include "bullet_plugin/core/exact/triangles.h"
 
 #include <gtest/gtest.h>
 
-#include "bullet_plugin/core/queries/exact/expansion.h"
+#include "bullet_plugin/core/exact/expansion.h"
 #include "oracle/exact_predicates.h"
 #include "tests/support/cases.h"
 #include "tests/support/oracle.h"

@@ -1,4 +1,5 @@
-// Named cases of kernels/lib/feature_contact.h: what is reported, with which normal, gaps, weights and time.
+// Named cases of kernels/lib/narrow_phase/feature_contact.h: what is reported, with which normal, gaps, weights and
+// time.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,12 +1,12 @@
 // The cull of single features, a lane at a time. It keeps every feature pair that gives a contact. Triangles may be
 // thin, tiny against the reach or the other, or far longer than one of their edges.
-#include "kernels/lib/feature_cull.h"
+#include "kernels/lib/broad_phase/feature_cull.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "kernels/lib/pair_contact.h"
+#include "kernels/lib/narrow_phase/pair_contact.h"
 #include "tests/support/cases.h"
 #include "tests/support/side.h"
 

@@ -1,5 +1,5 @@
 // The quick test that two features do not meet in a step is never wrong, and decides most near pairs.
-#include "kernels/lib/feature_meeting.h"
+#include "kernels/lib/narrow_phase/feature_meeting.h"
 
 #include <gtest/gtest.h>
 

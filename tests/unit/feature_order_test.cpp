@@ -1,6 +1,6 @@
 // The order of a cloth's features: groups that contain them, colours whose features share no node, and a report of
 // features that find no colour.
-#include "bullet_plugin/core/solver/feature_order.h"
+#include "bullet_plugin/core/solver/topology/feature_order.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <set>
 #include <tuple>
 
-#include "kernels/lib/vec3.h"
+#include "kernels/lib/geometry/vec3.h"
 #include "scenes/cloth_grid.h"
 
 namespace drape::test

@@ -3,7 +3,7 @@
 
 #include <limits>
 
-#include "kernels/lib/finite_corners.h"
+#include "kernels/lib/geometry/finite_corners.h"
 
 namespace drape::test
 {

@@ -1,6 +1,6 @@
 // Cuts of predicted paths at the first surface that a node would pass: where paths end, which nodes they concern, and
 // what their velocities lose.
-#include "bullet_plugin/core/solver/impact_cut.h"
+#include "bullet_plugin/core/solver/host/impact_cut.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // MeshProbe: inside and outside whatever the winding, the nearest place, and which triangles meet.
-#include "bullet_plugin/core/queries/mesh_probe.h"
+#include "bullet_plugin/core/probe/mesh_probe.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <vector>
 
-#include "kernels/lib/closest.h"
+#include "kernels/lib/geometry/closest.h"
 #include "scenes/random.h"
 #include "scenes/shapes.h"
 

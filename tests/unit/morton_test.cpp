@@ -1,5 +1,5 @@
-// kernels/lib/morton.h: codes interleave, keep order, and exist for odd input.
-#include "kernels/lib/morton.h"
+// kernels/lib/geometry/morton.h: codes interleave, keep order, and exist for odd input.
+#include "kernels/lib/geometry/morton.h"
 
 #include <gtest/gtest.h>
 

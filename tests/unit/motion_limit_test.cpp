@@ -1,6 +1,6 @@
 // Motion limits of nodes near obstacles. Points limited one by one equal those of the whole cloth at once, nodes follow
 // a moving obstacle, and triangles limit their nodes.
-#include "bullet_plugin/core/solver/motion_limit.h"
+#include "bullet_plugin/core/solver/host/motion_limit.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <map>
 
-#include "kernels/lib/feature_contact.h"
+#include "kernels/lib/narrow_phase/feature_contact.h"
 #include "scenes/cloth_grid.h"
 #include "tests/support/cases.h"
 #include "tests/support/oracle.h"

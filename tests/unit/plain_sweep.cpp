@@ -8,7 +8,7 @@
 #include <tuple>
 #include <utility>
 
-#include "bullet_plugin/core/solver/contact_group.h"
+#include "bullet_plugin/core/solver/host/contact_group.h"
 
 namespace drape::test
 {

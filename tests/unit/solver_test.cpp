@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "bullet_plugin/core/solver/link_strength.h"
-#include "bullet_plugin/core/solver/link_sweep.h"
-#include "kernels/lib/vec3.h"
+#include "bullet_plugin/core/solver/host/link_sweep.h"
+#include "kernels/lib/geometry/vec3.h"
 #include "tests/support/cases.h"
 
 namespace drape::test

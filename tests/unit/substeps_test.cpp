@@ -1,5 +1,5 @@
 // Nodes of a step and their motion in substeps: where free nodes end, damping, and what corrections give to velocities.
-#include "bullet_plugin/core/solver/substeps.h"
+#include "bullet_plugin/core/solver/host/substeps.h"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "bullet_plugin/core/solver/cloth_parts.h"
-#include "bullet_plugin/core/solver/momentum.h"
+#include "bullet_plugin/core/solver/topology/cloth_parts.h"
+#include "bullet_plugin/core/solver/host/momentum.h"
 #include "tests/support/cases.h"
 
 namespace drape::test

@@ -1,6 +1,6 @@
 // Triangles that intersect or come within a radius: nothing within is denied, nothing farther than the rounding allows
 // is reported, wherever the pair lies.
-#include "kernels/lib/triangle_pair.h"
+#include "kernels/lib/queries/triangle_pair.h"
 
 #include <gtest/gtest.h>
 

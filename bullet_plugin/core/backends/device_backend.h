@@ -9,7 +9,7 @@
 #include "bullet_plugin/core/device/program_set.h"
 #include "bullet_plugin/core/narrow_phase/narrow_phase.h"
 #include "bullet_plugin/core/ordering/ordering.h"
-#include "bullet_plugin/core/solver/solve_stage.h"
+#include "bullet_plugin/core/solver/device/solve_stage.h"
 #include "cloth_store.h"
 #include "drape/settings.h"
 #include "obstacle_store.h"

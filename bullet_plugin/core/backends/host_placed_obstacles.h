@@ -5,7 +5,7 @@
 
 #include "bullet_plugin/core/scene/growing_arrays.h"
 #include "bullet_plugin/core/scene/obstacle_changes.h"
-#include "kernels/lib/pair_contact.h"
+#include "kernels/lib/narrow_phase/pair_contact.h"
 
 namespace drape
 {

@@ -11,7 +11,7 @@ namespace
 // never decides whether a pair is a contact.
 constexpr float kReachPad = 1.001f;
 // Extra reach of candidates beyond contacts, as a share of the obstacle's longest edge. The search for meetings
-// counts features as met that are apart by a share of their size (isSwept in kernels/lib/rigid_motion.h).
+// counts features as met that are apart by a share of their size (isSwept in kernels/lib/geometry/rigid_motion.h).
 constexpr float kEdgePad = 1e-4f;
 
 std::size_t triangleCount(const MeshPool& pool, std::size_t slot)

@@ -6,7 +6,7 @@
 
 #include "bullet_plugin/core/cloth_cloth/self_step.h"
 #include "bullet_plugin/core/scene/mesh_id.h"
-#include "bullet_plugin/core/solver/kept_step.h"
+#include "bullet_plugin/core/solver/device/kept_step.h"
 #include "kernels/shared/motion.h"
 #include "ordinary_tests.h"
 

@@ -1,4 +1,5 @@
-// A step of cloths with themselves, common to the host and devices; kernels/lib/self_contact.h defines contacts.
+// A step of cloths with themselves, common to the host and devices; kernels/lib/cloth_cloth/self_contact.h defines
+// contacts.
 //
 // Input: the cloths' nodes at the step's start, its end and at rest, and the thickness per cloth. Output: contacts in
 // canonical order behind those with obstacles. Guarantee: no pair that gives a contact is missed; all back ends find
@@ -11,7 +12,7 @@
 #include <vector>
 
 #include "bullet_plugin/core/scene/mesh_pool.h"
-#include "kernels/lib/self_contact.h"
+#include "kernels/lib/cloth_cloth/self_contact.h"
 
 namespace drape
 {

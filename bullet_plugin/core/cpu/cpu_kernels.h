@@ -10,9 +10,9 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "kernels/lib/pair_contact.h"
-#include "kernels/lib/self_views.h"
-#include "kernels/lib/step_views.h"
+#include "kernels/lib/narrow_phase/pair_contact.h"
+#include "kernels/lib/cloth_cloth/self_views.h"
+#include "kernels/lib/step_data/step_views.h"
 #include "kernels/shared/contact.h"
 #include "kernels/shared/patch.h"
 

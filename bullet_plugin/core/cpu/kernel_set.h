@@ -4,8 +4,8 @@
 #include "build_options.h"
 
 #include "cpu_kernels.h"
-#include "kernels/lib/cull_packet.h"
-#include "kernels/lib/lane_contacts.h"
+#include "kernels/lib/broad_phase/cull_packet.h"
+#include "kernels/lib/narrow_phase/lane_contacts.h"
 #include "opencl_words.h"
 
 static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "simd_group.h takes a mask's bytes for such a CPU's");

@@ -3,9 +3,9 @@
 #include "build_options.h"
 
 #include "cpu_kernels.h"
-#include "kernels/lib/cull_packet.h"
-#include "kernels/lib/lane_self_contacts.h"
-#include "kernels/lib/self_cull.h"
+#include "kernels/lib/broad_phase/cull_packet.h"
+#include "kernels/lib/cloth_cloth/lane_self_contacts.h"
+#include "kernels/lib/cloth_cloth/self_cull.h"
 #include "opencl_words.h"
 
 namespace drape

@@ -1,4 +1,4 @@
-// Width and group of a launch over a list whose length is only on the device; see kernels/lib/item_runs.h.
+// Width and group of a launch over a list whose length is only on the device; see kernels/lib/work_items/item_runs.h.
 #pragma once
 
 #include <algorithm>

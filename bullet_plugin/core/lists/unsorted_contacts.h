@@ -1,5 +1,5 @@
 // A step's unsorted contacts on a device: narrow phases list them, and ordering sorts them (ContactSink in
-// kernels/lib/step_views.h).
+// kernels/lib/step_data/step_views.h).
 //
 // The numbers of contacts of the cloth features, and their sums, are zero between steps. Few features on a GPU have
 // sums, with which every work-item of the ordering computes positions by itself.
@@ -41,7 +41,7 @@ public:
 
     std::size_t capacity() const { return m_contacts.capacity(); }
     std::size_t features() const { return m_features; }
-    // Returns whether sums over all numbers stay small (kernels/lib/feature_sums.h).
+    // Returns whether sums over all numbers stay small (kernels/lib/ordering/feature_sums.h).
     bool few() const { return m_features <= DRAPE_MOST_SUMMED; }
     // Returns the position of the sums behind the features' numbers; 0 if there are none.
     cl_uint sums() const { return cl_uint(m_sums); }

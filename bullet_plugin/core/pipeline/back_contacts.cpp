@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "contact_view.h"
-#include "kernels/lib/rigid_motion.h"
-#include "kernels/lib/vec3.h"
+#include "kernels/lib/geometry/rigid_motion.h"
+#include "kernels/lib/geometry/vec3.h"
 
 namespace drape
 {

@@ -4,8 +4,8 @@
 
 #include "bullet_plugin/core/backends/step_pairs.h"
 #include "bullet_plugin/core/scene/scene.h"
-#include "kernels/lib/segment.h"
-#include "kernels/lib/vec3.h"
+#include "kernels/lib/geometry/segment.h"
+#include "kernels/lib/geometry/vec3.h"
 
 namespace drape
 {

@@ -6,7 +6,7 @@
 #include "back_contacts.h"
 #include "bullet_plugin/core/backends/device_backend.h"
 #include "bullet_plugin/core/check_settings.h"
-#include "bullet_plugin/core/queries/mesh_probe.h"
+#include "bullet_plugin/core/probe/mesh_probe.h"
 #include "bullet_plugin/core/scene/check_indices.h"
 #include "bullet_plugin/core/stopwatch.h"
 #include "node_upload.h"

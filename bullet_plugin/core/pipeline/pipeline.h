@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "bullet_plugin/core/ordering/contact_list.h"
-#include "bullet_plugin/core/solver/kept_step.h"
+#include "bullet_plugin/core/solver/device/kept_step.h"
 #include "bullet_plugin/core/threads/thread_team.h"
 #include "contact_view.h"
 #include "drape/error.h"
@@ -110,7 +110,8 @@ public:
     void addPair(MeshId cloth, MeshId obstacle, float thickness);
 
     // Names a cloth that collides with itself (MeshDescription::m_selfThickness > 0) in the coming step. Its features
-    // are swept over the step like contacts with obstacles (Settings::m_mode); see kernels/lib/self_contact.h.
+    // are swept over the step like contacts with obstacles (Settings::m_mode); see
+    // kernels/lib/cloth_cloth/self_contact.h.
     void addSelf(MeshId cloth);
 
     // Declares that a cloth's nodes are on the device (SolveStage::kept()), where the coming step predicts them. Its

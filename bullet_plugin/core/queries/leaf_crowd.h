@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "kernels/lib/dop.h"
+#include "kernels/lib/geometry/dop.h"
 
 namespace drape
 {

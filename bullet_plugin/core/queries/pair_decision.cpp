@@ -4,8 +4,8 @@
 #include <tuple>
 #include <utility>
 
-#include "bullet_plugin/core/queries/exact/triangles.h"
-#include "kernels/lib/triangle_pair.h"
+#include "bullet_plugin/core/exact/triangles.h"
+#include "kernels/lib/queries/triangle_pair.h"
 
 namespace drape
 {

@@ -4,14 +4,14 @@
 #include <cmath>
 
 #include "bullet_plugin/core/device/device_choice.h"
-#include "bullet_plugin/core/queries/exact/triangles.h"
+#include "bullet_plugin/core/exact/triangles.h"
 #include "bullet_plugin/core/scene/check_indices.h"
 #include "bullet_plugin/core/check_settings.h"
 #include "bullet_plugin/core/backends/step_limits.h"
 #include "bullet_plugin/core/public_call.h"
 #include "bullet_plugin/core/queries/leaf_pair_count.h"
 #include "bullet_plugin/core/stopwatch.h"
-#include "kernels/lib/triangle_pair.h"
+#include "kernels/lib/queries/triangle_pair.h"
 #include "query_device.h"
 
 namespace drape

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "bullet_plugin/core/device/bound_kernel.h"
-#include "bvh_layout.h"
+#include "bullet_plugin/core/probe/bvh_layout.h"
 #include "kernels/queries/queries_bindings.h"
 #include "kernels/shared/mesh.h"
 

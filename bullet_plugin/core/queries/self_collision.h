@@ -2,7 +2,7 @@
 // mesh with itself or of two meshes.
 //
 // Job: from hierarchies over the step's motion to pairs of triangles, then to the vertex-face and edge-edge pairs whose
-// own volumes overlap, then to those that touch (kernels/lib/ccd.h). Features that share a vertex are left out.
+// own volumes overlap, then to those that touch (kernels/lib/ccd/ccd.h). Features that share a vertex are left out.
 // Guarantee: no touching pair is missed; host and device find the same sets, and times bit for bit. Cost: linear in the
 // pairs; memory is bounded, since long lists are made in batches of leaves.
 #pragma once
@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "bullet_plugin/core/device/bound_kernel.h"
-#include "bullet_plugin/core/queries/bvh_layout.h"
-#include "kernels/lib/self_collision.h"
+#include "bullet_plugin/core/probe/bvh_layout.h"
+#include "kernels/lib/broad_phase/leaf_walk.h"
 #include "kernels/queries/queries_bindings.h"
 
 namespace drape

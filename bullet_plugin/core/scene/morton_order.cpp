@@ -4,7 +4,7 @@
 #include <limits>
 #include <numeric>
 
-#include "kernels/lib/triangle_order.h"
+#include "kernels/lib/geometry/triangle_order.h"
 
 namespace drape
 {

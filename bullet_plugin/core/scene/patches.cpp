@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "kernels/lib/vec3.h"
+#include "kernels/lib/geometry/vec3.h"
 
 namespace drape
 {

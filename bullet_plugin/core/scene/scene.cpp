@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include "kernels/lib/vec3.h"
+#include "kernels/lib/geometry/vec3.h"
 #include "morton_order.h"
 #include "normal_cones.h"
 #include "growing_arrays.h"

@@ -7,8 +7,8 @@
 #include <set>
 #include <utility>
 
-#include "kernels/lib/segment.h"
-#include "kernels/lib/vec3.h"
+#include "kernels/lib/geometry/segment.h"
+#include "kernels/lib/geometry/vec3.h"
 
 namespace drape
 {

@@ -33,9 +33,9 @@ struct Topology
 Topology buildTopology(const std::int32_t* triangles, std::size_t triangleCount, std::size_t vertexCount);
 
 // Adds edges that are not a triangle's, 2 indices each, in [0, vertexCount). Each becomes a triangle that repeats its
-// second vertex (kernels/lib/segment.h). It owns the edge between the two as its first edge, and those of the two
-// vertices without an owner. Edges that repeat an index or an existing edge are left out. Call before addPoints(). O(n
-// log n).
+// second vertex (kernels/lib/geometry/segment.h). It owns the edge between the two as its first edge, and those of the
+// two vertices without an owner. Edges that repeat an index or an existing edge are left out. Call before addPoints().
+// O(n log n).
 void addEdges(Topology& topology, const std::int32_t* edges, std::size_t edgeCount);
 
 // Adds a point for each vertex without a triangle: a triangle that has the vertex three times and owns it, with an edge

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "contact_source.h"
-#include "feature_order.h"
-#include "motion_limit.h"
+#include "bullet_plugin/core/solver/topology/feature_order.h"
+#include "bullet_plugin/core/solver/host/motion_limit.h"
 #include "solver_nodes.h"
 
 namespace drape

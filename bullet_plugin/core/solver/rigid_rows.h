@@ -3,14 +3,14 @@
 //
 // Within a step a body stands where the step ends, and its velocity tells where it came from. What the cloth pushes
 // changes the body's velocity, and with it how far the body's points come in the rest of the step. Rows are projected
-// in their order, on one thread (kernels/lib/rigid_row.h). World frame, SI units.
+// in their order, on one thread (kernels/lib/solver/rigid_row.h). World frame, SI units.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
-#include "kernels/lib/rigid_row.h"
+#include "kernels/lib/solver/rigid_row.h"
 #include "solver_nodes.h"
 
 namespace drape

@@ -9,7 +9,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "kernels/lib/solver_node.h"
+#include "kernels/lib/solver/solver_node.h"
 
 namespace drape
 {

@@ -9,7 +9,7 @@
 // threads.
 //
 // Cost: linear in the contacts; kContactSweeps per iteration or substep, and closing sweeps after them
-// (kernels/lib/closing_sweeps.h). Reasons: docs/design_notes/contact_sweeps.md.
+// (kernels/lib/solver/closing_sweeps.h). Reasons: docs/design_notes/contact_sweeps.md.
 #pragma once
 
 #include <algorithm>
@@ -17,10 +17,10 @@
 #include <memory>
 #include <vector>
 
-#include "contact_sweep.h"
-#include "packed_step.h"
+#include "bullet_plugin/core/solver/host/contact_sweep.h"
+#include "bullet_plugin/core/solver/device/packed_step.h"
 #include "solver_cloth.h"
-#include "substeps.h"
+#include "bullet_plugin/core/solver/host/substeps.h"
 
 namespace drape
 {

@@ -6,7 +6,7 @@
 #ifndef DRAPE_STUDY_GRID_H
 #define DRAPE_STUDY_GRID_H
 
-#include "../../../kernels/lib/dop.h"
+#include "../../../kernels/lib/geometry/dop.h"
 
 DRAPE_NAMESPACE_BEGIN
 

@@ -3,7 +3,7 @@
 #define DRAPE_LIB_GROUP_REDUCE_H
 
 #ifdef __OPENCL_VERSION__
-#include "../../../kernels/lib/dop.h"
+#include "../../../kernels/lib/geometry/dop.h"
 
 // Returns the sum of every work-item's value to all of them. scratch holds one ulong per work-item.
 static ulong groupSum(__local ulong* scratch, const ulong value)

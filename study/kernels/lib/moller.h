@@ -5,7 +5,7 @@
 #ifndef DRAPE_LIB_MOLLER_H
 #define DRAPE_LIB_MOLLER_H
 
-#include "../../../kernels/lib/feature_contact.h"
+#include "../../../kernels/lib/narrow_phase/feature_contact.h"
 
 DRAPE_NAMESPACE_BEGIN
 

@@ -2,7 +2,7 @@
 #ifndef DRAPE_STUDY_MORTON_WIDE_H
 #define DRAPE_STUDY_MORTON_WIDE_H
 
-#include "../../../kernels/lib/morton.h"
+#include "../../../kernels/lib/geometry/morton.h"
 
 DRAPE_NAMESPACE_BEGIN
 

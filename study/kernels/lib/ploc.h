@@ -7,7 +7,7 @@
 #ifndef DRAPE_LIB_PLOC_H
 #define DRAPE_LIB_PLOC_H
 
-#include "../../../kernels/lib/dop.h"
+#include "../../../kernels/lib/geometry/dop.h"
 #include "tree_layout.h"
 
 DRAPE_NAMESPACE_BEGIN

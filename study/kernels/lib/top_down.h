@@ -7,9 +7,9 @@
 #ifndef DRAPE_LIB_TOP_DOWN_H
 #define DRAPE_LIB_TOP_DOWN_H
 
-#include "../../../kernels/lib/morton.h"
+#include "../../../kernels/lib/geometry/morton.h"
 #include "tree_refit.h"
-#include "../../../kernels/lib/triangle_order.h"
+#include "../../../kernels/lib/geometry/triangle_order.h"
 
 DRAPE_NAMESPACE_BEGIN
 

@@ -3,7 +3,7 @@
 #define DRAPE_LIB_TRAVERSAL_H
 
 #include "../shared/traversal.h"
-#include "../../../kernels/lib/dop.h"
+#include "../../../kernels/lib/geometry/dop.h"
 
 DRAPE_NAMESPACE_BEGIN
 

@@ -8,7 +8,7 @@
 #include "study/trees/tree_quality.h"
 #include "bullet_plugin/core/device/device_choice.h"
 #include "bullet_plugin/core/scene/topology.h"
-#include "kernels/lib/dop.h"
+#include "kernels/lib/geometry/dop.h"
 
 namespace drape::bench
 {

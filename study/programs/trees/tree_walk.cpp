@@ -5,7 +5,7 @@
 
 #include "benchmarks/support/result_hash.h"
 #include "bullet_plugin/core/ordering/canonical_order.h"
-#include "kernels/lib/dop.h"
+#include "kernels/lib/geometry/dop.h"
 
 namespace drape::bench
 {

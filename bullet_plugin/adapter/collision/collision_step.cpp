@@ -1,0 +1,504 @@
+#include "bullet_plugin/adapter/collision/collision_step.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "bullet_plugin/adapter/collision/stretch.h"
+#include "bullet_plugin/adapter/solver/body_nodes.h"
+#include "bullet_plugin/core/scene/growing_arrays.h"
+#include "bullet_plugin/core/stopwatch.h"
+
+namespace drape
+{
+namespace
+{
+// Factor on the tests that ordinary motion needs, for cloth that came apart or is beside an obstacle that jumps.
+constexpr float kMostAllowance = 8;
+
+// Returns whether an obstacle goes twice its size (m) in a step, or turns by more than a right angle.
+bool jumps(const BodyMotion& motion, btScalar size)
+{
+    const btMatrix3x3 turn = motion.m_end.getBasis() * motion.m_start.getBasis().transpose();
+    return (motion.m_end.getOrigin() - motion.m_start.getOrigin()).length() > 2 * size ||
+           turn[0][0] + turn[1][1] + turn[2][2] < 1;
+}
+
+// Returns whether contacts could move any of the body's nodes.
+bool anyMoves(const btSoftBody& body)
+{
+    if (!(body.m_sst.sdt > 0)) return false;
+    for (int i = 0; i < body.m_nodes.size(); ++i)
+        if (movableInverseMass(body.m_nodes[i]) > 0) return true;
+    return false;
+}
+
+// startOf: returns a node's start by its index, m.
+template <class StartOf>
+void writeNodes(const btSoftBody& body, const StartOf& startOf, const NodeStretch& stretch)
+{
+    float *start = stretch.m_start, *end = stretch.m_end;
+    for (std::size_t i = stretch.m_first; i < stretch.m_first + stretch.m_count; ++i)
+    {
+        writePosition(startOf(i), start);
+        writePosition(body.m_nodes[static_cast<int>(i)].m_x, end);
+    }
+}
+}  // namespace
+
+BodyContacts* CollisionStep::bodyOf(MeshId cloth)
+{
+    const auto found = m_byCloth.find(cloth);
+    return found == m_byCloth.end() ? nullptr : &m_bodies[found->second];
+}
+
+BodyContacts* CollisionStep::contactsOf(const btSoftBody& body)
+{
+    const auto found = m_byBody.find(&body);
+    return found == m_byBody.end() ? nullptr : &m_bodies[found->second];
+}
+
+void CollisionStep::addBody(ClothMirror& cloth, btSoftBody* body)
+{
+    // Reserves room for all, so that clear() allocates no memory.
+    reserveGrowing(m_spare, m_bodies.size() + m_spare.size() + 1);
+    if (m_spare.empty()) m_spare.emplace_back();
+    m_bodies.push_back(std::move(m_spare.back()));
+    m_spare.pop_back();
+    m_byCloth[cloth.id()] = m_byBody[body] = m_bodies.size() - 1;
+    m_uploads.push_back(Upload{cloth.id(), m_bodies.size() - 1, nullptr});
+    m_bodies.back().start(cloth.id(), body, cloth.parts(), cloth.order());
+    m_bodies.back().m_isAway = m_state.m_kept.stepOf(*body) != nullptr;
+}
+
+void CollisionStep::clear()
+{
+    std::move(m_bodies.begin(), m_bodies.end(), std::back_inserter(m_spare));
+    m_bodies.clear();
+    m_byCloth.clear();
+    m_byBody.clear();
+    m_pairs.clear();
+    m_paired.clear();
+    m_pinned.clear();
+    m_mirrors.clear();
+    m_uploads.clear();
+}
+
+void CollisionStep::giveBackRoom()
+{
+    clear();
+    m_bodies = std::vector<BodyContacts>();
+    m_spare = std::vector<BodyContacts>();
+    m_jumped = std::vector<std::vector<int>>();
+    m_pairs = std::vector<Pair>();
+    m_uploads = std::vector<Upload>();
+}
+
+// Makes the pipeline's pair. Beside an obstacle whose vertices move in this step, the cloth has a mesh and starts of
+// its own.
+CollisionStep::Pair CollisionStep::makePair(const PairNote& note, const ClothMirror& cloth, MeshId obstacle)
+{
+    const ObstacleMirror& mirror = m_state.obstacleMirror(note);
+    Pair pair = {cloth.id(), obstacle, note.m_thickness, nullptr, {&cloth, &mirror, note.m_motion, note.m_kinematic}};
+    if (!mirror.before()) return pair;
+    bringHome(*bodyOf(cloth.id()));
+    const btScalar reach = note.m_thickness * (1 + btScalar(m_state.settings().m_activation));
+    const DeformedPair& deformed = m_deformed.update(cloth, mirror, note.m_motion, note.m_kinematic, reach);
+    const std::size_t body = m_byCloth.at(cloth.id());
+    m_bodies[body].m_hasDeformedPair = true;
+    m_byCloth[deformed.m_mesh] = body;
+    m_uploads.push_back(Upload{deformed.m_mesh, body, deformed.m_starts.data()});
+    m_state.m_found.nameCloth(deformed.m_mesh, note.m_cloth);
+    m_state.m_found.source().nameStarts(deformed.m_mesh, deformed.m_carried.data());
+    pair.m_cloth = deformed.m_mesh;
+    pair.m_carriedStarts = deformed.m_carried.data();
+    return pair;
+}
+
+void CollisionStep::addPair(const PairNote& note)
+{
+    ClothMirror& cloth = m_state.clothMirror(note);
+    const auto bringHome = [&]
+    {
+        if (m_state.m_kept.stepOf(*note.m_cloth)) m_bringHome(*note.m_cloth);
+    };
+    const MeshId clothId = bodyOf(cloth.id()) ? cloth.id() : cloth.refresh(m_state.pipeline(), bringHome);
+    const MeshId obstacleId = m_state.obstacleMirror(note).refresh(m_state.pipeline(), note.m_kinematic, note.m_motion);
+    if (clothId == kNoMesh || obstacleId == kNoMesh) return;
+    if (!bodyOf(clothId))
+    {
+        addBody(cloth, note.m_cloth);
+        m_mirrors.push_back(&cloth);
+        m_state.m_found.nameCloth(clothId, note.m_cloth);
+    }
+    m_state.m_found.nameObstacle(obstacleId, note.m_obstacle.m_object, note.m_motion);
+    if (!m_paired.insert(std::uint64_t(clothId) << 32 | obstacleId).second) return;
+    m_pairs.push_back(makePair(note, cloth, obstacleId));
+    btVector3 low, high;
+    note.m_obstacle.m_shape->getAabb(note.m_motion.m_end, low, high);
+    // Accounts for a negative margin: it makes Bullet's box smaller than the mesh, by up to √3 times the margin when
+    // turned.
+    const btScalar lacks = btScalar(1.7321) * std::max(btScalar(0), -note.m_obstacle.m_shape->getMargin());
+    low -= btVector3(lacks, lacks, lacks);
+    high += btVector3(lacks, lacks, lacks);
+    BodyContacts& body = *bodyOf(clothId);
+    body.m_obstacleJumps = body.m_obstacleJumps || jumps(note.m_motion, (high - low).length());
+    ClothContacts& contacts = body.m_contacts;
+    const float thickness = float(note.m_thickness);
+    contacts.m_limit.addObstacle(vec3Of(low), vec3Of(high), thickness, m_state.settings().m_activation,
+                                 {m_state.m_found.source().mapOf(obstacleId), m_pairs.back().m_carriedStarts});
+    contacts.m_obstacles.push_back({obstacleId, thickness});
+    contacts.m_leastThickness = std::min(contacts.m_leastThickness, thickness);
+    contacts.m_mostThickness = std::max(contacts.m_mostThickness, thickness);
+}
+
+// Records the paths of the nodes and writes them for the device, so that a large cloth's nodes are read once. Later
+// detections of a step keep the paths' starts.
+void CollisionStep::uploadNodes(Detection detection)
+{
+    std::vector<MeshId> cloths;
+    std::vector<const Upload*> uploads;
+    for (const Upload& upload : m_uploads)
+    {
+        const BodyContacts& body = m_bodies[upload.m_body];
+        if (detection != Detection::First && !isDetected(body, detection)) continue;
+        if (body.m_isAway)
+            m_state.pipeline().addKept(upload.m_mesh, *m_state.m_kept.stepOf(*body.m_body));
+        else
+        {
+            cloths.push_back(upload.m_mesh);
+            uploads.push_back(&upload);
+        }
+        if (upload.m_starts) continue;
+        ClothContacts& contacts = m_bodies[upload.m_body].m_contacts;
+        contacts.m_limit.startStep(m_mirrors[upload.m_body]->faces());
+        contacts.m_nodes.resize(m_mirrors[upload.m_body]->faces().nodeCount());
+    }
+    const auto write = [&](const NodeStretch& stretch)
+    {
+        const Upload& upload = *uploads[stretch.m_cloth];
+        BodyContacts& body = m_bodies[upload.m_body];
+        if (upload.m_starts)
+            return writeNodes(
+                *body.m_body, [&](std::size_t node) { return upload.m_starts[node]; }, stretch);
+        for (std::size_t i = stretch.m_first; i < stretch.m_first + stretch.m_count; ++i)
+        {
+            const btSoftBody::Node& node = body.m_body->m_nodes[int(i)];
+            if (detection == Detection::First)
+                recordPath(node, i, body.nodes());
+            else
+                recordEnd(node, i, body.nodes());
+        }
+        writeNodes(
+            *body.m_body, [&](std::size_t node) { return vectorOf(body.nodes().start(node)); }, stretch);
+    };
+    m_state.pipeline().writeNodes(cloths, write);
+}
+
+// Records the body's paths again as the detection found them, at home: the solver may have replaced their ends by more
+// precise ones.
+void CollisionStep::recordPaths(BodyContacts& body)
+{
+    bringHome(body);
+    for (std::size_t i = 0; i < body.nodes().count(); ++i)
+        recordPath(body.m_body->m_nodes[static_cast<int>(i)], i, body.nodes());
+}
+
+void CollisionStep::bringHome(BodyContacts& body)
+{
+    if (!body.m_isAway) return;
+    m_bringHome(*body.m_body);
+    body.m_isAway = false;
+}
+
+void CollisionStep::begin(const std::vector<PairNote>& notes, BringHome bringHome)
+{
+    const auto neededHost = [](const BodyContacts& body) { return body.m_meetsSurface; };
+    const auto count = std::count_if(m_bodies.begin(), m_bodies.end(), neededHost);
+    m_neededHost = 2 * static_cast<std::size_t>(count) > m_bodies.size();
+    clear();
+    m_bringHome = std::move(bringHome);
+    m_uploadMs = 0;
+    m_state.m_found.clear();
+    // Adding and removing meshes moves the memory that nodes are written to: mirrors first, nodes after.
+    m_state.dropOldMirrors();
+    m_deformed.beginStep();
+    for (const PairNote& note : notes)
+    {
+        if (anyMoves(*note.m_cloth))
+            addPair(note);
+        else if (std::find(m_pinned.begin(), m_pinned.end(), note.m_cloth) == m_pinned.end())
+            m_pinned.push_back(note.m_cloth);
+    }
+    checkStarts();
+}
+
+void CollisionStep::submit(ContactPlace place)
+{
+    if (m_pairs.empty()) return;
+    namePairs(Detection::First);
+    if (!m_state.pipeline().mayStay()) place = ContactPlace::Host;
+    for (BodyContacts& body : m_bodies)
+        if (place == ContactPlace::Host) bringHome(body);
+    submit(Detection::First, place);
+    m_state.m_found.setOnDevice(m_state.pipeline(), m_state.pipeline().contactsOnDevice());
+}
+
+// Returns whether the body takes part in a detection: in the first one, in others until it is solved, and in checks if
+// it left its path.
+bool CollisionStep::isDetected(const BodyContacts& body, Detection detection) const
+{
+    if (body.m_leftOut) return false;
+    if (detection == Detection::Check) return body.m_isOffPath;
+    return detection == Detection::First || !body.m_contacts.m_isSolved;
+}
+
+// Names the pairs of the coming detection.
+void CollisionStep::namePairs(Detection detection)
+{
+    for (const Pair& pair : m_pairs)
+    {
+        if (!isDetected(*bodyOf(pair.m_cloth), detection)) continue;
+        m_state.pipeline().addPair(pair.m_cloth, pair.m_obstacle, static_cast<float>(pair.m_thickness));
+    }
+}
+
+void CollisionStep::submit(Detection detection, ContactPlace place)
+{
+    Stopwatch watch;
+    uploadNodes(detection);
+    m_state.pipeline().submit(place);
+    m_uploadMs += watch.lapMs();
+}
+
+// Takes the contacts of the current detection. If that holds bodies together, detects again and takes the new
+// contacts.
+void CollisionStep::receiveHeld(Detection detection, const TakeSolved& takeSolved)
+{
+    receiveAll(detection, takeSolved);
+    if (!m_heldTogether) return;
+    // Bodies that are examined again are not left out yet.
+    StepStatistics& statistics = m_state.m_statistics;
+    const auto isLeftOut = [](const BodyContacts& body) { return body.m_leftOut; };
+    statistics.m_clothsLeftOut = std::size_t(std::count_if(m_bodies.begin(), m_bodies.end(), isLeftOut));
+    if (statistics.m_clothsLeftOut == 0) statistics.m_status &= ~std::uint32_t(kStepClothsLeftOut);
+    statistics.m_status |= kStepMotionHeldBack;
+    if (detection == Detection::First) detection = Detection::Again;
+    namePairs(detection);
+    submit(detection);
+    receiveAll(detection);
+    for (BodyContacts& body : m_bodies)
+        body.m_heldTogether = false;
+    m_heldTogether = false;
+}
+
+void CollisionStep::receive(const ContactList& contacts, Detection detection)
+{
+    const auto isDone = [detection](const BodyContacts& body)
+    { return detection != Detection::Check && body.m_contacts.m_isSolved; };
+    BodyContacts* body = nullptr;
+    for (std::size_t i = 0; i < contacts.size();)
+    {
+        const Contact& first = contacts[i];
+        const ClothFeature cloth = m_state.pipeline().clothFeature(first);
+        if (!body || body->m_cloth != cloth.m_cloth) body = bodyOf(cloth.m_cloth);
+        const std::size_t begin = i;
+        while (i < contacts.size() && contacts[i].m_featureIndex == first.m_featureIndex)
+            ++i;
+        if (!body || !isDetected(*body, detection) || isDone(*body)) continue;
+        const std::uint32_t count = static_cast<std::uint32_t>(i - begin);
+        const OrderedFeature& ordered = body->m_contacts.m_order->features()[cloth.m_index];
+        if (body->m_tangled.empty())
+            addContacts(*body, &first, count, ordered);
+        else
+            addHeldContacts(*body, &first, count, ordered);
+    }
+    for (BodyContacts& pushed : m_bodies)
+        if (!isDone(pushed)) addPushes(pushed);
+}
+
+// Contacts of one feature of the cloth.
+void CollisionStep::addContacts(BodyContacts& body, const Contact* first, std::uint32_t count,
+                                const OrderedFeature& ordered)
+{
+    FeatureContacts feature{first, count, &ordered, 1};
+    for (std::uint32_t i = 0; i < count; ++i)
+        feature.m_leastTime = std::min(feature.m_leastTime, first[i].m_time);
+    body.m_meetsSurface = body.m_meetsSurface || feature.m_leastTime < 1;
+    for (int k = 0; k < 3 && ordered.m_nodes[k] >= 0; ++k)
+        body.m_contacts.m_limit.addContactNode(ordered.m_nodes[k]);
+    body.m_contacts.m_features.push_back(feature);
+}
+
+// Returns how many times as many tests as in ordinary motion the cloth may make.
+float CollisionStep::allowanceOf(MeshId cloth)
+{
+    const std::size_t index = m_byCloth.at(cloth);
+    BodyContacts& body = m_bodies[index];
+    if (body.m_isAway) recordPaths(body);
+    const Stretch stretch = stretchOf(*body.m_body, m_mirrors[index]->faces(), body.nodes());
+    const bool isApart = stretch.m_start > kMostStretch;
+    if (!body.m_heldTogether && (isApart || stretch.m_end > kMostStretch)) return 1;
+    return isApart || body.m_heldTogether || body.m_obstacleJumps ? kMostAllowance : HUGE_VALF;
+}
+
+// Waits for the current detection. Returns its contacts, none if all bodies are solved.
+ContactList CollisionStep::waitForContacts(const TakeSolved& takeSolved)
+{
+    Pipeline& pipeline = m_state.pipeline();
+    const ContactList contacts = pipeline.finish([this](MeshId cloth) { return allowanceOf(cloth); });
+    const bool onDevice = pipeline.areContactsOnDevice();
+    if (!takeSolved && !onDevice) return contacts;
+    const bool isWhole = pipeline.ranOnce() && pipeline.statistics().m_invalidNodes == 0;
+    if (takeSolved && onDevice && isWhole) takeSolved();
+    const auto isSolved = [](const BodyContacts& body) { return body.m_contacts.m_isSolved; };
+    if (std::all_of(m_bodies.begin(), m_bodies.end(), isSolved)) return contacts;
+    for (BodyContacts& body : m_bodies)
+    {
+        body.m_meetsSurface = !isSolved(body);
+        if (body.m_meetsSurface) recordPaths(body);
+    }
+    return pipeline.bringContacts();
+}
+
+// Waits for the current detection. Its contacts replace any earlier ones of this step.
+void CollisionStep::receiveAll(Detection detection, const TakeSolved& takeSolved)
+{
+    for (BodyContacts& body : m_bodies)
+        body.m_contacts.m_features.clear();
+    const ContactList contacts = waitForContacts(takeSolved);
+    addDetection(m_state.m_statistics, m_state.pipeline().statistics(), detection);
+    markUnguarded();
+    if (m_state.pipeline().areContactsOnDevice()) return;
+    m_state.m_found.set(m_state.pipeline(), contacts);
+    receive(contacts, detection);
+}
+
+// Lists the body's contacts that its nodes' paths meet.
+std::vector<SolverContact> CollisionStep::impactsOf(const BodyContacts& body) const
+{
+    std::vector<SolverContact> impacts;
+    for (const FeatureContacts& feature : body.m_contacts.m_features)
+        for (std::uint32_t i = 0; feature.m_leastTime < 1 && i < feature.m_count; ++i)
+            if (feature.m_contacts[i].m_time < 1)
+                impacts.push_back(body.m_contacts.resolve(m_state.m_found.source(), feature.m_contacts[i]));
+    return impacts;
+}
+
+bool CollisionStep::cutAtImpactsOf(BodyContacts& body, Cut cut)
+{
+    if (!cutAtImpacts(body.nodes(), impactsOf(body), cut, body.perSecond())) return false;
+    writeShifted(body.nodes(), *body.m_body);
+    return true;
+}
+
+bool CollisionStep::cutPaths()
+{
+    bool any = false;
+    for (BodyContacts& body : m_bodies)
+        any = cutAtImpactsOf(body, Cut::EachNode) || any;
+    return any;
+}
+
+void CollisionStep::finish(const TakeSolved& takeSolved)
+{
+    m_state.m_statistics = StepStatistics();
+    m_state.m_statistics.m_skipped = m_pairs.empty();
+    if (m_state.pipeline().deviceFailed()) m_state.m_statistics.m_status |= kStepDeviceFailed;
+    for (const ClothMirror* cloth : m_mirrors)
+        if (cloth->hasForeignFaces()) m_state.m_statistics.m_status |= kStepFacesLeftOut;
+    if (m_pairs.empty()) return;
+    m_state.m_statistics.m_startsIntersecting = m_starts.intersectingPairs();
+    m_state.m_statistics.m_startIntersections = m_starts.intersections();
+    if (m_starts.intersectingPairs() > 0) m_state.m_statistics.m_status |= kStepStartsIntersecting;
+    receiveHeld(Detection::First, takeSolved);
+    for (int detections = 1; detections < kMostDetections && cutPaths(); ++detections)
+    {
+        namePairs(Detection::Again);
+        submit(Detection::Again);
+        receiveHeld(Detection::Again);
+    }
+}
+
+bool CollisionStep::cutOffPath(Cut cut)
+{
+    bool any = false;
+    for (std::size_t i = 0; i < m_bodies.size(); ++i)
+    {
+        if (!m_bodies[i].m_isOffPath || !cutAtImpactsOf(m_bodies[i], cut)) continue;
+        m_mirrors[i]->watch(true);
+        any = true;
+    }
+    return any;
+}
+
+// Reports bodies whose paths still pass a surface after the last cut. The next step checks them where they are,
+// except at nodes that the app moves.
+void CollisionStep::reportPassed()
+{
+    for (std::size_t i = 0; i < m_bodies.size(); ++i)
+    {
+        if (!m_bodies[i].m_isOffPath) continue;
+        std::vector<SolverContact> impacts = impactsOf(m_bodies[i]);
+        const SolverNodes& nodes = m_bodies[i].nodes();
+        const auto isHeld = [&](const SolverContact& impact)
+        {
+            return std::any_of(impact.m_nodes, impact.m_nodes + 3,
+                               [&](int node) { return node >= 0 && !(nodes.inverseMass(std::size_t(node)) > 0); });
+        };
+        impacts.erase(std::remove_if(impacts.begin(), impacts.end(), isHeld), impacts.end());
+        if (!anyCuts(impacts)) continue;
+        m_state.m_statistics.m_status |= kStepSurfacePassed;
+        m_mirrors[i]->startAnew();
+    }
+}
+
+void CollisionStep::reportMeetingDeformed()
+{
+    for (const Pair& pair : m_pairs)
+    {
+        const std::size_t body = m_byCloth.at(pair.m_cloth);
+        if (!pair.m_carriedStarts || m_bodies[body].m_leftOut || !m_starts.endsMeeting(pair.m_start)) continue;
+        m_state.m_statistics.m_status |= kStepSurfacePassed;
+        m_mirrors[body]->startAnew();
+    }
+}
+
+void CollisionStep::detectRealPaths()
+{
+    namePairs(Detection::Check);
+    submit(Detection::Check);
+    receiveHeld(Detection::Check);
+}
+
+std::vector<BodyContacts*> CollisionStep::checkOffPath()
+{
+    std::vector<BodyContacts*> bodies;
+    for (std::size_t i = 0; i < m_bodies.size(); ++i)
+    {
+        BodyContacts& body = m_bodies[i];
+        ClothContacts& contacts = body.m_contacts;
+        const bool mayHavePassed = contacts.m_mayHavePassed && !contacts.m_isFiltered;
+        body.m_isOffPath =
+            !body.m_isAway && (mayHavePassed || m_mirrors[i]->isWatched() || contacts.m_limit.anyOffPath(body.nodes()));
+        m_mirrors[i]->watch(false);
+        if (body.m_isOffPath) bodies.push_back(&body);
+    }
+    if (bodies.empty()) return {};
+    // Keeps the reported contacts as the solver received them.
+    m_state.m_found.keepList();
+    for (int detections = 1;; ++detections)
+    {
+        detectRealPaths();
+        if (detections > kMostDetections)
+        {
+            reportPassed();
+            return {};
+        }
+        if (!cutOffPath(detections < kMostDetections ? Cut::EachNode : Cut::WholeBody)) break;
+    }
+    bodies.erase(std::remove_if(bodies.begin(), bodies.end(), [](const BodyContacts* body) { return body->m_leftOut; }),
+                 bodies.end());
+    return bodies;
+}
+}  // namespace drape

@@ -1,0 +1,43 @@
+// The contacts of the last detection, and Bullet's objects for the meshes that they name.
+//
+// Job: name bodies and obstacles for the solver's source of contacts, and list all contacts for Plugin::contacts().
+// Input: the pipeline's list, which the pipeline owns; it is valid until the pipeline's next submit. A list that is on
+// the device comes to the host when list() asks for it.
+#pragma once
+
+#include <unordered_map>
+#include <vector>
+
+#include "bullet_plugin/adapter/motion/kinematic_motion.h"
+#include "bullet_plugin/core/solver/contact_source.h"
+#include "drape/plugin.h"
+
+namespace drape
+{
+class FoundContacts
+{
+public:
+    // Nothing found, nothing named.
+    void clear() { *this = FoundContacts(); }
+    void nameCloth(MeshId cloth, const btSoftBody* body) { m_bodies[cloth] = body; }
+    void nameObstacle(MeshId obstacle, const btCollisionObject* object, const BodyMotion& motion);
+    void set(Pipeline& pipeline, const ContactList& contacts);
+    void setOnDevice(Pipeline& pipeline, const DeviceContacts& contacts);
+    // Keeps list() as it is now until clear(), whatever is found later.
+    void keepList();
+    std::vector<ContactInfo> list() const;
+
+    ContactSource& source() { return m_source; }
+    const ContactSource& source() const { return m_source; }
+
+private:
+    ContactInfo infoOf(const Contact& contact) const;
+
+    std::unordered_map<MeshId, const btSoftBody*> m_bodies;
+    std::unordered_map<MeshId, const btCollisionObject*> m_obstacles;
+    ContactSource m_source;
+    Pipeline* m_pipeline = nullptr;
+    std::vector<ContactInfo> m_kept;
+    bool m_keeps = false;
+};
+}  // namespace drape

@@ -1,0 +1,462 @@
+#include "bullet_plugin/adapter/kept/kept_bodies.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "BulletCollision/BroadphaseCollision/btBroadphaseInterface.h"
+#include "BulletCollision/CollisionShapes/btCompoundShape.h"
+#include "BulletCollision/CollisionShapes/btStaticPlaneShape.h"
+#include "bullet_plugin/adapter/pairs/eligibility.h"
+#include "bullet_plugin/adapter/mirrors/solid_links.h"
+#include "bullet_plugin/adapter/wiring/plugin_state.h"
+#include "bullet_plugin/adapter/motion/prediction.h"
+#include "bullet_plugin/adapter/solver/substep_body.h"
+#include "bullet_plugin/adapter/vectors.h"
+#include "bullet_plugin/core/public_call.h"
+#include "bullet_plugin/core/solver/device/solve_stage.h"
+
+namespace drape
+{
+namespace
+{
+// Returns whether Bullet looks for contacts of the two soft bodies.
+bool bothCollide(const btSoftBody& a, const btSoftBody& b)
+{
+    return (a.m_cfg.collisions & b.m_cfg.collisions & btSoftBody::fCollision::SVSmask) != 0;
+}
+
+// Returns whether the body's bounds reach below a static plane, whose own bounds are infinite.
+bool reachesBelow(const btSoftBody& body, const btCollisionObject& object, const btStaticPlaneShape& plane)
+{
+    const btVector3 normal = object.getWorldTransform().getBasis() * plane.getPlaneNormal();
+    const btVector3 origin = object.getWorldTransform() * (plane.getPlaneNormal() * plane.getPlaneConstant());
+    btVector3 lowest;
+    for (int axis = 0; axis < 3; ++axis)
+        lowest[axis] = body.m_bounds[normal[axis] > 0 ? 0 : 1][axis];
+    return normal.dot(lowest - origin) <= plane.getMargin();
+}
+
+// Looks for objects whose contacts with the body Bullet's own algorithm would find.
+class FindStock : public btBroadphaseAabbCallback
+{
+public:
+    FindStock(const PluginState& state, const btSoftBody& body) : m_state(state), m_body(body) {}
+
+    bool process(const btBroadphaseProxy* proxy) override
+    {
+        const auto* const object = static_cast<const btCollisionObject*>(proxy->m_clientObject);
+        m_found = m_found || (object && object != &m_body && object->getCollisionShape() && isStock(*object));
+        return !m_found;
+    }
+
+    bool isStock(const btCollisionObject& object) const
+    {
+        if (!respond(m_body, object) || !m_body.checkCollideWith(&object) || !object.checkCollideWith(&m_body))
+            return false;
+        if (const btSoftBody* const other = btSoftBody::upcast(&object)) return bothCollide(m_body, *other);
+        const btCollisionShape& shape = *object.getCollisionShape();
+        if (shape.getShapeType() == STATIC_PLANE_PROXYTYPE)
+            return reachesBelow(m_body, object, static_cast<const btStaticPlaneShape&>(shape));
+        return !handlesAll(object, shape);
+    }
+
+    bool m_found = false;
+
+private:
+    bool handlesAll(const btCollisionObject& object, const btCollisionShape& shape) const
+    {
+        if (!shape.isCompound()) return !reasonForStock(m_state, m_body, object, shape);
+        const auto& compound = static_cast<const btCompoundShape&>(shape);
+        for (int i = 0; i < compound.getNumChildShapes(); ++i)
+            if (!handlesAll(object, *compound.getChildShape(i))) return false;
+        return true;
+    }
+
+    const PluginState& m_state;
+    const btSoftBody& m_body;
+};
+
+btVector3 corner(const float numbers[3])
+{
+    return btVector3(btScalar(numbers[0]), btScalar(numbers[1]), btScalar(numbers[2]));
+}
+
+void add(KeptBoxes& boxes, int box, const btVector3& v)
+{
+    for (int axis = 0; axis < 3; ++axis)
+    {
+        const float number = float(v[axis]);
+        boxes.m_low[box][axis] = std::min(boxes.m_low[box][axis], number);
+        boxes.m_high[box][axis] = std::max(boxes.m_high[box][axis], number);
+        boxes.m_areFinite = boxes.m_areFinite && std::isfinite(number);
+    }
+}
+
+// Returns the boxes of the coming step, for the time and the gravity of the step before.
+KeptBoxes boxesAround(const btSoftBody& body, const KeptStep& step)
+{
+    KeptBoxes boxes;
+    std::fill_n(&boxes.m_low[0][0], 3 * DRAPE_KEPT_BOXES, HUGE_VALF);
+    std::fill_n(&boxes.m_high[0][0], 3 * DRAPE_KEPT_BOXES, -HUGE_VALF);
+    boxes.m_areFinite = true;
+    const btVector3 gravity = vectorOf(step.m_gravity);
+    for (int i = 0; i < body.m_nodes.size(); ++i)
+    {
+        const btSoftBody::Node& node = body.m_nodes[i];
+        const btVector3 velocity = node.m_im > 0 ? node.m_v + gravity : node.m_v;
+        const btVector3 free = node.m_x + velocity * step.m_time;
+        add(boxes, 0, node.m_x);
+        add(boxes, 1, free);
+        add(boxes, 2, free + (velocity - node.m_v) * step.m_perSecond * step.m_shift);
+    }
+    return boxes;
+}
+
+KeptStep stepOver(const btSoftBody& body, KeptId id)
+{
+    KeptStep step;
+    step.m_id = id;
+    step.m_gravity = vec3Of(body.m_worldInfo->m_gravity * body.m_sst.sdt);
+    step.m_time = float(body.m_sst.sdt);
+    step.m_perSecond = float(body.m_sst.isdt);
+    step.m_shift = float(SubstepBody::pathShift(body));
+    return step;
+}
+
+bool isSameStep(const KeptStep& a, const KeptStep& b)
+{
+    return a.m_gravity.x == b.m_gravity.x && a.m_gravity.y == b.m_gravity.y && a.m_gravity.z == b.m_gravity.z &&
+           a.m_time == b.m_time && a.m_perSecond == b.m_perSecond && a.m_shift == b.m_shift;
+}
+
+// Adds the normals of faces to those of their nodes, as Bullet does.
+void writeNormals(const btSoftBody& body, const KeptNode* nodes, float* normals)
+{
+    const std::size_t count = static_cast<std::size_t>(body.m_nodes.size());
+    std::vector<btVector3> sums(count, btVector3(0, 0, 0));
+    for (int f = 0; f < body.m_faces.size(); ++f)
+    {
+        int at[3];
+        for (int k = 0; k < 3; ++k)
+            at[k] = nodeIndex(body, body.m_faces[f].m_n[k]);
+        if (std::count(at, at + 3, kForeign) > 0) continue;  // a node of another body
+        const btVector3 first = vectorOf(nodes[at[0]].m_position);
+        const btVector3 normal =
+            (vectorOf(nodes[at[1]].m_position) - first).cross(vectorOf(nodes[at[2]].m_position) - first);
+        for (const int node : at)
+            sums[static_cast<std::size_t>(node)] += normal;
+    }
+    for (std::size_t i = 0; i < count; ++i)
+    {
+        const btScalar length = sums[i].length();
+        if (length > SIMD_EPSILON) sums[i] /= length;
+        std::copy(sums[i].m_floats, sums[i].m_floats + 3, normals + 3 * i);
+    }
+}
+
+// Returns the number of nodes that both the body and the device have.
+int countOf(const btSoftBody& body, std::size_t stored)
+{
+    return std::min(body.m_nodes.size(), static_cast<int>(stored));
+}
+
+bool anyPinned(const btSoftBody& body)
+{
+    for (int i = 0; i < body.m_nodes.size(); ++i)
+        if (!(body.m_nodes[i].m_im > 0)) return true;
+    return false;
+}
+
+void write(const Vec3& v, float* to)
+{
+    to[0] = v.x;
+    to[1] = v.y;
+    to[2] = v.z;
+}
+}  // namespace
+
+KeptBodies::Kept* KeptBodies::find(const btSoftBody& body)
+{
+    const auto found = m_bodies.find(&body);
+    return found == m_bodies.end() ? nullptr : &found->second;
+}
+
+const KeptBodies::Kept* KeptBodies::find(const btSoftBody& body) const
+{
+    const auto found = m_bodies.find(&body);
+    return found == m_bodies.end() ? nullptr : &found->second;
+}
+
+// Returns the stage that holds the nodes; null without a device.
+SolveStage* KeptBodies::stage() const
+{
+    return m_state.ready() ? m_state.pipeline().solveStage(SIZE_MAX) : nullptr;
+}
+
+const char* KeptBodies::keep(btSoftBody& body)
+{
+    SolveStage* const solver = stage();
+    if (!solver) return "no OpenCL device solves cloth (Settings::m_solverPlace)";
+    if (const char* reason = reasonForBulletsLinks(m_state, body)) return reason;
+    if (!isPlain(body))
+        return "the soft body has wind, pressure, volume, a pose or a face tree, or is to collide with soft bodies";
+    if (body.m_anchors.size() > 0) return "the soft body has anchors";
+    const Kept* const known = find(body);
+    if (!known || known->m_revision != solver->revision()) makeRoom(body, m_bodies[&body]);
+    return nullptr;
+}
+
+// Gives the body memory on the device. It is at home then.
+void KeptBodies::makeRoom(const btSoftBody& body, Kept& kept)
+{
+    kept = Kept();
+    kept.m_count = static_cast<std::size_t>(body.m_nodes.size());
+    kept.m_id = stage()->kept().add(kept.m_count);
+    kept.m_revision = stage()->revision();
+}
+
+void KeptBodies::freeRoom(const Kept& kept)
+{
+    SolveStage* const solver = stage();
+    if (solver && kept.m_revision == solver->revision()) solver->kept().remove(kept.m_id);
+}
+
+void KeptBodies::takeNodes(const btSoftBody& body)
+{
+    Kept* const kept = find(body);
+    if (kept) kept->m_isAway = kept->m_isReading = false;
+}
+
+void KeptBodies::forgetRemoved(const btSoftBodySolver* solver, const btAlignedObjectArray<btSoftBody*>& bodies)
+{
+    for (auto entry = m_bodies.begin(); entry != m_bodies.end();)
+    {
+        const int count = bodies.size();
+        const bool isRemoved =
+            entry->second.m_solver == solver && bodies.findLinearSearch(const_cast<btSoftBody*>(entry->first)) == count;
+        if (isRemoved) freeRoom(entry->second);
+        entry = isRemoved ? m_bodies.erase(entry) : std::next(entry);
+    }
+}
+
+void KeptBodies::release(btSoftBody& body)
+{
+    Kept* const kept = find(body);
+    if (!kept) return;
+    kept->m_isReading = false;  // a transfer of an earlier step's nodes
+    fetch(body);
+    freeRoom(*kept);
+    m_bodies.erase(&body);
+}
+
+void KeptBodies::abandon() noexcept
+{
+    SolveStage* const solver = guardedOr(static_cast<SolveStage*>(nullptr), [this] { return stage(); });
+    for (auto& entry : m_bodies)
+    {
+        Kept& kept = entry.second;
+        if (!kept.m_isAway || !solver || kept.m_revision != solver->revision()) continue;
+        guarded([&] { comeHome(*const_cast<btSoftBody*>(entry.first)); }, [](const CaughtException&) {});
+    }
+    m_bodies.clear();
+}
+
+void KeptBodies::beginFetch(const btSoftBody& body)
+{
+    Kept* const kept = find(body);
+    SolveStage* const solver = stage();
+    if (!kept || !kept->m_isAway || !solver) return;
+    solver->kept().beginRead(kept->m_id);
+    kept->m_isReading = true;
+    kept->m_waitsBefore = m_state.pipeline().deviceWaits();
+}
+
+// Returns the nodes of beginFetch(), or those of now; null if the device lost them.
+const KeptNode* KeptBodies::read(Kept& kept)
+{
+    SolveStage* const solver = stage();
+    if (!solver || kept.m_revision != solver->revision()) return nullptr;
+    const bool arrived = kept.m_isReading && m_state.pipeline().deviceWaits() > kept.m_waitsBefore;
+    if (!kept.m_isReading) solver->kept().beginRead(kept.m_id);
+    kept.m_isReading = false;
+    if (!arrived && !m_state.pipeline().waitForDevice()) return nullptr;
+    return solver->kept().nodesRead(kept.m_id);
+}
+
+bool KeptBodies::fetch(btSoftBody& body)
+{
+    Kept* const kept = find(body);
+    if (!kept || !kept->m_isAway) return false;
+    const KeptNode* const nodes = read(*kept);
+    if (!nodes) return false;
+    for (int i = 0; i < countOf(body, kept->m_count); ++i)
+    {
+        btSoftBody::Node& node = body.m_nodes[i];
+        node.m_x = node.m_q = vectorOf(nodes[i].m_position);
+        node.m_v = vectorOf(nodes[i].m_velocity);
+    }
+    body.updateNormals();
+    m_state.leaveNodeTree(body);
+    for (std::size_t k = 0; k < kept->m_pins.size(); ++k)
+        kept->m_pinnedAt[k] = body.m_nodes[kept->m_pins[k]].m_x;
+    return true;
+}
+
+bool KeptBodies::fetch(const btSoftBody& body, const NodeArrays& arrays)
+{
+    Kept* const kept = find(body);
+    const KeptNode* const nodes = kept && kept->m_isAway ? read(*kept) : nullptr;
+    if (!nodes || kept->m_count != static_cast<std::size_t>(body.m_nodes.size())) return false;
+    for (std::size_t i = 0; i < kept->m_count; ++i)
+    {
+        if (arrays.m_positions) write(nodes[i].m_position, arrays.m_positions + 3 * i);
+        if (arrays.m_velocities) write(nodes[i].m_velocity, arrays.m_velocities + 3 * i);
+    }
+    if (arrays.m_normals) writeNormals(body, nodes, arrays.m_normals);
+    return true;
+}
+
+bool KeptBodies::isAway(const btSoftBody& body) const
+{
+    const Kept* const kept = find(body);
+    return kept && kept->m_isAway;
+}
+
+bool KeptBodies::anyBegun() const
+{
+    return std::any_of(m_bodies.begin(), m_bodies.end(), [](const auto& entry) { return entry.second.m_isBegun; });
+}
+
+bool KeptBodies::hasPins(const btSoftBody& body) const
+{
+    const Kept* const kept = find(body);
+    return kept && !kept->m_pins.empty();
+}
+
+bool KeptBodies::anyPinMoved(const btSoftBody& body, const Kept& kept) const
+{
+    for (std::size_t k = 0; k < kept.m_pins.size(); ++k)
+        if (body.m_nodes[kept.m_pins[k]].m_x != kept.m_pinnedAt[k]) return true;
+    return false;
+}
+
+bool KeptBodies::begin(btSoftBody& body, btScalar dt)
+{
+    Kept& kept = *find(body);
+    kept.m_isBegun = false;
+    if (m_isRetired || kept.m_count != static_cast<std::size_t>(body.m_nodes.size())) return false;
+    if (kept.m_faces != body.m_faces.size() || kept.m_links != body.m_links.size()) return false;
+    if (!isPlain(body, dt) || body.m_anchors.size() > 0 || anyPinMoved(body, kept)) return false;
+    beginPlain(body, dt);
+    const KeptStep step = stepOver(body, kept.m_id);
+    if (!isSameStep(step, kept.m_step)) return false;
+    const KeptBoxes& boxes = boxesOf(body);
+    if (!boxes.m_areFinite) return false;
+    setBounds(body, corner(boxes.m_low[1]), corner(boxes.m_high[1]));
+    FindStock stock(m_state, body);
+    body.m_worldInfo->m_broadphase->aabbTest(body.m_bounds[0], body.m_bounds[1], stock);
+    if (stock.m_found) return false;
+    body.m_rcontacts.resizeNoInitialize(0);
+    body.m_scontacts.resizeNoInitialize(0);
+    kept.m_isBegun = true;
+    return true;
+}
+
+bool KeptBodies::isRead(const btSoftBody& body, const btCollisionObject& object) const
+{
+    return FindStock(m_state, body).isStock(object);
+}
+
+const KeptStep* KeptBodies::stepOf(const btSoftBody& body) const
+{
+    const Kept* const kept = find(body);
+    return kept && kept->m_isAway && kept->m_isBegun ? &kept->m_step : nullptr;
+}
+
+const KeptBoxes& KeptBodies::boxesOf(const btSoftBody& body) const
+{
+    return stage()->kept().boxes(find(body)->m_id);
+}
+
+void KeptBodies::callHome(const btSoftBody& body)
+{
+    beginFetch(body);
+    Kept& kept = *find(body);
+    kept.m_isCalled = kept.m_isReading;
+}
+
+// Pinned nodes stay where Bullet has them if the app moved them.
+void KeptBodies::comeHome(btSoftBody& body)
+{
+    Kept& kept = *find(body);
+    if (!kept.m_isCalled) kept.m_isReading = false;  // a transfer of an earlier step's nodes
+    kept.m_isCalled = false;
+    const KeptNode* const nodes = read(kept);
+    kept.m_isAway = kept.m_isBegun = false;
+    if (!nodes) return;
+    std::size_t pin = 0;
+    for (int i = 0; i < countOf(body, kept.m_count); ++i)
+    {
+        btSoftBody::Node& node = body.m_nodes[i];
+        const bool isPin = pin < kept.m_pins.size() && kept.m_pins[pin] == i;
+        const bool isMoved = isPin && node.m_x != kept.m_pinnedAt[pin];
+        if (isPin) ++pin;
+        node.m_q = vectorOf(nodes[i].m_position);
+        node.m_f.setZero();  // the app added these while the body was away
+        if (isMoved) continue;
+        node.m_x = node.m_q;
+        node.m_v = vectorOf(nodes[i].m_velocity);
+    }
+    if (!isPlain(body)) body.updateNormals();  // for Bullet's prediction
+}
+
+bool KeptBodies::hadPair(const btSoftBody& body) const
+{
+    const Kept* const kept = find(body);
+    return kept && kept->m_hadPair;
+}
+
+void KeptBodies::store(btSoftBody& body, Kept& kept)
+{
+    if (kept.m_count != static_cast<std::size_t>(body.m_nodes.size()))
+    {
+        freeRoom(kept);
+        kept.m_count = static_cast<std::size_t>(body.m_nodes.size());
+        kept.m_id = stage()->kept().add(kept.m_count);
+    }
+    std::vector<KeptNode> nodes(kept.m_count);
+    kept.m_pins.clear();
+    kept.m_pinnedAt.clear();
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+    {
+        const btSoftBody::Node& node = body.m_nodes[static_cast<int>(i)];
+        nodes[i] = {vec3Of(node.m_x), float(node.m_im), vec3Of(node.m_v), 0};
+        if (node.m_im > 0) continue;
+        kept.m_pins.push_back(static_cast<int>(i));
+        kept.m_pinnedAt.push_back(node.m_x);
+    }
+    kept.m_faces = body.m_faces.size();
+    kept.m_links = body.m_links.size();
+    kept.m_step = stepOver(body, kept.m_id);
+    stage()->kept().write(kept.m_id, nodes, boxesAround(body, kept.m_step));
+    kept.m_isAway = true;
+}
+
+void KeptBodies::endStep(btSoftBody& body, const btSoftBodySolver* bulletSolver, bool hasPair)
+{
+    Kept* const kept = find(body);
+    if (!kept) return;
+    const SolveStage* const solver = stage();
+    if (!solver || kept->m_revision != solver->revision())
+    {
+        m_bodies.erase(&body);
+        return;
+    }
+    kept->m_solver = bulletSolver;
+    kept->m_hadPair = hasPair;
+    // A free body would come home in the next step.
+    if (!m_isRetired && !kept->m_isAway && (hasPair || anyPinned(body))) store(body, *kept);
+    kept->m_isBegun = false;
+}
+}  // namespace drape

@@ -1,0 +1,104 @@
+// Bodies whose nodes stay on the device between steps (Plugin::keepOnDevice()).
+//
+// A kept body is away while the device's nodes are newer than Bullet's. Its step begins without nodes: the device
+// predicts it, and bounds come from boxes that the last step left. Where a step needs the nodes, the body comes home:
+// it gets the nodes of the last step's end, and the step goes on as for any body, with the same bits. At the step's end
+// its nodes are stored again. Cost of a step away: some comparisons, and one for each pinned node.
+//
+// Input: bodies that are alive; others are only compared. Errors: a device that fails leaves bodies with the nodes that
+// Bullet has.
+#pragma once
+
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "BulletSoftBody/btSoftBody.h"
+#include "bullet_plugin/core/solver/device/kept_step.h"
+#include "drape/node_arrays.h"
+
+namespace drape
+{
+class PluginState;
+class SolveStage;
+
+class KeptBodies
+{
+public:
+    explicit KeptBodies(PluginState& state) : m_state(state) {}
+
+    // Keeps the body from the end of its next step on. Returns null, or why it cannot be kept.
+    const char* keep(btSoftBody& body);
+    // Takes the nodes as Bullet has them.
+    void takeNodes(const btSoftBody& body);
+    // Gives the body its nodes and keeps it no more.
+    void release(btSoftBody& body);
+    // Starts the transfer of a body's nodes to the host.
+    void beginFetch(const btSoftBody& body);
+    // Gives Bullet's nodes, or the arrays, the nodes of beginFetch(), or those of the last step. Returns whether the
+    // body was away.
+    bool fetch(btSoftBody& body);
+    bool fetch(const btSoftBody& body, const NodeArrays& arrays);
+    // Brings bodies home in their next step, and keeps them no more: nobody is left to fetch them.
+    void retire() { m_isRetired = true; }
+    // Gives all bodies their nodes as far as possible, and keeps none. Throws nothing.
+    void abandon() noexcept;
+
+    // Forgets bodies that the solver stepped and that are not among its bodies any more. Does not follow them.
+    void forgetRemoved(const btSoftBodySolver* solver, const btAlignedObjectArray<btSoftBody*>& bodies);
+    bool any() const { return !m_bodies.empty(); }
+    bool isAway(const btSoftBody& body) const;
+    // Returns whether any body's step has begun away.
+    bool anyBegun() const;
+    // Returns whether a node of the stored body is pinned.
+    bool hasPins(const btSoftBody& body) const;
+    // Begins a step of dt seconds of a body that is away. Returns false if it must come home first.
+    bool begin(btSoftBody& body, btScalar dt);
+    // Returns whether Bullet's own algorithm may find contacts of the body with the object.
+    bool isRead(const btSoftBody& body, const btCollisionObject& object) const;
+    // Returns the step that was begun; null for a body that is at home.
+    const KeptStep* stepOf(const btSoftBody& body) const;
+    // Returns the boxes of that step.
+    const KeptBoxes& boxesOf(const btSoftBody& body) const;
+    // Starts the transfer for comeHome(), so that several bodies share a wait.
+    void callHome(const btSoftBody& body);
+    // Gives the body the nodes of the last step's end.
+    void comeHome(btSoftBody& body);
+    // Returns whether a solver's step had contacts for the body when it was last away or stored.
+    bool hadPair(const btSoftBody& body) const;
+    // Ends a step: bodies at home are stored. hasPair: the step looked for contacts of the body.
+    void endStep(btSoftBody& body, const btSoftBodySolver* solver, bool hasPair);
+
+private:
+    struct Kept
+    {
+        KeptId m_id = 0;
+        const btSoftBodySolver* m_solver = nullptr;  // the last step's; compared, not followed
+        std::size_t m_count = 0;                     // nodes
+        int m_faces = 0, m_links = 0;                // numbers when the nodes were stored
+        std::uint64_t m_revision = 0;                // the stage's
+        bool m_isAway = false;
+        bool m_isBegun = false;  // m_step is the running step
+        bool m_hadPair = false;
+        KeptStep m_step;
+        std::vector<int> m_pins;
+        std::vector<btVector3> m_pinnedAt;
+        bool m_isReading = false;  // a transfer was begun
+        bool m_isCalled = false;   // by callHome()
+        std::size_t m_waitsBefore = 0;
+    };
+
+    Kept* find(const btSoftBody& body);
+    const Kept* find(const btSoftBody& body) const;
+    SolveStage* stage() const;
+    void makeRoom(const btSoftBody& body, Kept& kept);
+    void freeRoom(const Kept& kept);
+    void store(btSoftBody& body, Kept& kept);
+    const KeptNode* read(Kept& kept);
+    bool anyPinMoved(const btSoftBody& body, const Kept& kept) const;
+
+    PluginState& m_state;
+    bool m_isRetired = false;
+    std::unordered_map<const btSoftBody*, Kept> m_bodies;
+};
+}  // namespace drape

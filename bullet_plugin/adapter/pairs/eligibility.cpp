@@ -1,0 +1,110 @@
+#include "bullet_plugin/adapter/pairs/eligibility.h"
+
+#include "BulletCollision/BroadphaseCollision/btBroadphaseProxy.h"
+#include "BulletCollision/CollisionShapes/btCompoundShape.h"
+#include "bullet_plugin/adapter/mirrors/mesh_reader.h"
+#include "bullet_plugin/adapter/wiring/plugin_state.h"
+#include "bullet_plugin/adapter/mirrors/solid_links.h"
+#include "bullet_plugin/adapter/solver/substep_body.h"
+
+namespace drape
+{
+namespace
+{
+// Returns why Drape does not handle cloth that a solver of the plugin steps; null if it does.
+const char* reasonFromSteppedCloth(const PluginState& state, const btSoftBody& cloth)
+{
+    if (!state.isWired())
+        return "no dispatcher has this plugin's algorithm: make it with a drape::CollisionConfiguration, or call "
+               "drape::install()";
+    if (cloth.m_reducedModel) return "the soft body is a reduced deformable model";
+    if (cloth.m_cfg.collisions & btSoftBody::fCollision::SDF_RD)
+        return "the soft body collides as a deformable (SDF_RD)";
+    if (!(cloth.m_cfg.collisions & btSoftBody::fCollision::SDF_RS))
+        return "the soft body does not collide by its nodes (SDF_RS is off, cluster mode)";
+    if (cloth.m_faces.size() > 0) return nullptr;
+    if (cloth.m_tetras.size() > 0) return "the soft body has tetrahedra but no faces";
+    if (!hasSolidLink(cloth)) return "the soft body has neither faces nor links that could collide without them";
+    return nullptr;
+}
+
+const char* reasonFromCloth(const PluginState& state, const btSoftBody& cloth)
+{
+    if (!state.ready()) return "Drape could not start; see Plugin::error()";
+    if (!state.steps(cloth))
+        return "the world's soft body solver is not a drape::SoftBodySolver of this plugin; a deformable world has its "
+               "own";
+    return reasonFromSteppedCloth(state, cloth);
+}
+
+const char* reasonFromObstacle(const btCollisionObject& obstacle, const btCollisionShape& shape)
+{
+    if (shape.getShapeType() == GIMPACT_SHAPE_PROXYTYPE) return "the obstacle is a GImpact shape";
+    if (!isMeshShape(shape.getShapeType())) return "the obstacle is not a triangle mesh shape";
+    if (!obstacle.isStaticOrKinematicObject())
+        return "the obstacle is dynamic; only static and kinematic obstacles are handled";
+    return nullptr;
+}
+
+bool disabledFor(const btSoftBody& cloth, const btCollisionObject& obstacle)
+{
+    return cloth.m_collisionDisabledObjects.findLinearSearch(&obstacle) != cloth.m_collisionDisabledObjects.size();
+}
+}  // namespace
+
+const char* reasonForStock(const PluginState& state, const btSoftBody& cloth, const btCollisionObject& obstacle,
+                           const btCollisionShape& shape)
+{
+    if (const char* reason = reasonFromCloth(state, cloth)) return reason;
+    return reasonFromObstacle(obstacle, shape);
+}
+
+const char* reasonFromSettings(const PluginState& state, const btSoftBody& body)
+{
+    if (!state.ready()) return "Drape could not start; see Plugin::error()";
+    if (state.settings().m_solver == Solver::Bullet) return "Settings::m_solver leaves links to Bullet";
+    if (!state.steps(body)) return "the world's soft body solver is not a drape::SoftBodySolver of this plugin";
+    return SubstepBody::reasonFromSettings(body);
+}
+
+const char* reasonForBulletsLinks(const PluginState& state, const btSoftBody& body)
+{
+    if (const char* reason = reasonFromSettings(state, body)) return reason;
+    return SubstepBody::reasonForBullet(body);
+}
+
+bool handlesCloth(const PluginState& state, const btSoftBody& cloth)
+{
+    return !reasonFromCloth(state, cloth);
+}
+
+bool handlesSteppedCloth(const PluginState& state, const btSoftBody& cloth)
+{
+    return state.ready() && !reasonFromSteppedCloth(state, cloth);
+}
+
+bool stockCanTake(const btCollisionObject& obstacle, const btTransform& pose)
+{
+    return pose == obstacle.getWorldTransform();
+}
+
+bool handlesObstacle(const btCollisionObject& obstacle, const btCollisionShape& shape)
+{
+    return !reasonFromObstacle(obstacle, shape);
+}
+
+bool handlesAny(const PluginState& state, const btSoftBody& cloth, const btCollisionObject& obstacle,
+                const btCollisionShape& shape)
+{
+    if (shape.getShapeType() != COMPOUND_SHAPE_PROXYTYPE) return !reasonForStock(state, cloth, obstacle, shape);
+    const btCompoundShape& compound = static_cast<const btCompoundShape&>(shape);
+    for (int i = 0; i < compound.getNumChildShapes(); ++i)
+        if (handlesAny(state, cloth, obstacle, *compound.getChildShape(i))) return true;
+    return false;
+}
+
+bool respond(const btSoftBody& cloth, const btCollisionObject& obstacle)
+{
+    return cloth.hasContactResponse() && obstacle.hasContactResponse() && !disabledFor(cloth, obstacle);
+}
+}  // namespace drape

@@ -1,0 +1,115 @@
+#include "bullet_plugin/adapter/solver/rigid_bodies.h"
+
+#include <algorithm>
+
+#include "BulletDynamics/Dynamics/btRigidBody.h"
+#include "bullet_plugin/adapter/solver/substep_body.h"
+#include "bullet_plugin/adapter/vectors.h"
+#include "bullet_plugin/core/solver/link_strength.h"
+#include "bullet_plugin/core/solver/solver_contact.h"
+
+namespace drape
+{
+namespace
+{
+RigidBody rigidBodyOf(const btRigidBody* rigid)
+{
+    RigidBody body = {};
+    if (!rigid) return body;
+    body.m_centre = vec3Of(rigid->getWorldTransform().getOrigin());
+    body.m_velocity = vec3Of(rigid->getLinearVelocity());
+    body.m_spin = vec3Of(rigid->getAngularVelocity());
+    if (rigid->isStaticOrKinematicObject()) return body;
+    body.m_moves = 1;
+    body.m_inverseMass = vec3Of(rigid->getLinearFactor() * rigid->getInvMass());
+    for (int row = 0; row < 3; ++row)
+        body.m_inverseInertia[row] =
+            vec3Of(rigid->getInvInertiaTensorWorld().getRow(row) * rigid->getAngularFactor()[row]);
+    return body;
+}
+
+std::uint32_t nodeIndex(const btSoftBody& body, const btSoftBody::Node* node)
+{
+    return static_cast<std::uint32_t>(node - &body.m_nodes[0]);
+}
+}  // namespace
+
+const char* RigidBodies::reasonForBullet(const btSoftBody& body)
+{
+    for (int i = 0; i < body.m_rcontacts.size(); ++i)
+        if (body.m_rcontacts[i].m_cti.m_colObj->getInternalType() == btCollisionObject::CO_FEATHERSTONE_LINK)
+            return "the soft body touches a link of a multibody";
+    return nullptr;
+}
+
+void RigidBodies::clear()
+{
+    m_indices.clear();
+    m_rigid.clear();
+    m_bodies.clear();
+}
+
+std::uint32_t RigidBodies::indexOf(const btCollisionObject& object)
+{
+    const auto added = m_indices.emplace(&object, static_cast<std::uint32_t>(m_bodies.size()));
+    if (added.second)
+    {
+        btRigidBody* const rigid = btRigidBody::upcast(const_cast<btCollisionObject*>(&object));
+        m_rigid.push_back(rigid);
+        m_bodies.push_back(rigidBodyOf(rigid));
+    }
+    return added.first->second;
+}
+
+void RigidBodies::addRows(const btSoftBody& body, const SolverNodes& nodes, RigidRows& rows)
+{
+    const float dt = float(body.m_sst.sdt), margin = float(body.getCollisionShape()->getMargin());
+    rows.setBodies(m_bodies);
+    for (int i = 0; i < body.m_anchors.size(); ++i)
+    {
+        const btSoftBody::Anchor& anchor = body.m_anchors[i];
+        const btTransform& pose = anchor.m_body->getWorldTransform();
+        RigidAnchor row = {};
+        row.m_node = nodeIndex(body, anchor.m_node);
+        row.m_body = indexOf(*anchor.m_body);
+        row.m_arm = vec3Of(pose.getBasis() * anchor.m_local);
+        const Vec3 end = vec3Of(pose * anchor.m_local - vectorOf(nodes.start(row.m_node)));
+        row.m_apart = vec3AddScaled(end, rigidVelocity(&m_bodies[row.m_body], row.m_arm), -dt);
+        row.m_share = float(visitShare(double(body.m_cfg.kAHR * anchor.m_influence), body.m_cfg.piterations,
+                                       SubstepBody::substepsOf(body), 1));
+        rows.add(row);
+    }
+    for (int i = 0; i < body.m_rcontacts.size(); ++i)
+    {
+        const btSoftBody::RContact& contact = body.m_rcontacts[i];
+        const btCollisionObject& object = *contact.m_cti.m_colObj;
+        if (!object.hasContactResponse()) continue;
+        RigidContact row = {};
+        row.m_node = nodeIndex(body, contact.m_node);
+        row.m_body = indexOf(object);
+        RigidPlane& plane = row.m_plane;
+        plane.m_normal = vec3Of(contact.m_cti.m_normal);
+        row.m_arm = vec3Of(contact.m_c1);
+        const btVector3 start = vectorOf(nodes.start(row.m_node));
+        const float advance = dt * vec3Dot(plane.m_normal, rigidVelocity(&m_bodies[row.m_body], row.m_arm));
+        plane.m_gap = float(contact.m_cti.m_normal.dot(start) + contact.m_cti.m_offset) + advance;
+        // Bullet's contacts act on approaching nodes alone. Beside edges of a mesh their normals may lead inwards.
+        const bool leaves = vec3Dot(plane.m_normal, nodes.way(row.m_node)) > advance;
+        plane.m_recover =
+            plane.m_gap < 0 && !leaves ? targetGap(plane.m_gap, float(contact.m_c4), margin) - plane.m_gap : 0.0f;
+        plane.m_friction = float(body.m_cfg.kDF * object.getFriction());
+        rows.add(row);
+    }
+}
+
+void RigidBodies::applyImpulses() const
+{
+    for (std::size_t i = 0; i < m_bodies.size(); ++i)
+    {
+        btRigidBody* const rigid = m_rigid[i];
+        if (!rigid || rigid->isStaticOrKinematicObject()) continue;
+        rigid->applyCentralImpulse(vectorOf(m_bodies[i].m_impulse));
+        rigid->applyTorqueImpulse(vectorOf(m_bodies[i].m_turning));
+    }
+}
+}  // namespace drape

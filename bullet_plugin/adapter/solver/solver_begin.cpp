@@ -1,0 +1,229 @@
+// The begin of a solver's step: which bodies take part, and their prediction.
+#include <algorithm>
+#include <iterator>
+
+#include "bullet_plugin/adapter/solver/body_jobs.h"
+#include "bullet_plugin/adapter/pairs/eligibility.h"
+#include "bullet_plugin/adapter/motion/motion_bounds.h"
+#include "bullet_plugin/adapter/motion/node_tree.h"
+#include "bullet_plugin/adapter/motion/prediction.h"
+#include "bullet_plugin/adapter/solver/solver_work.h"
+#include "bullet_plugin/core/stopwatch.h"
+
+namespace drape
+{
+namespace
+{
+// Predicts the motion as Bullet does, but treats a negative time step as zero. Bullet would derive a negative speed
+// bound from it.
+void predictByBullet(btSoftBody& body, btScalar dt)
+{
+    const btScalar timescale = body.m_cfg.timescale;
+    const bool passes = dt > 0 && timescale > 0;
+    if (!passes) body.m_cfg.timescale = 0;
+    body.predictMotion(passes ? dt : btScalar(0));
+    body.m_cfg.timescale = timescale;
+}
+}  // namespace
+
+SubstepBody* SoftBodySolver::Work::substepsAt(const btSoftBody& body) const
+{
+    const auto found = m_substeps.find(&body);
+    return found == m_substeps.end() ? nullptr : found->second.get();
+}
+
+template <class Predict>
+void SoftBodySolver::Work::predictOne(btSoftBody& body, ThreadTeam* threads, const Predict& predict)
+{
+    SubstepBody* const substeps = substepsAt(body);
+    if (substeps) substeps->beforePrediction(body, threads);
+    predict(body);
+    if (substeps) substeps->afterPrediction(body, threads);
+}
+
+// Begins the steps of bodies whose nodes are on the device, or gives them the nodes of the last step's end.
+void SoftBodySolver::Work::beginAway(const Bodies& bodies)
+{
+    if (!m_state.m_kept.any()) return;
+    const auto isAway = [&](int i) { return bodies[i]->isActive() && m_state.m_kept.isAway(*bodies[i]); };
+    for (int i = 0; i < bodies.size(); ++i)
+    {
+        if (!isAway(i)) continue;
+        SubstepBody* const substeps = substepsAt(*bodies[i]);
+        if (substeps && m_state.m_kept.begin(*bodies[i], m_dt))
+            substeps->predictAway();
+        else
+            m_state.m_kept.callHome(*bodies[i]);
+    }
+    for (int i = 0; i < bodies.size(); ++i)
+        if (isAway(i) && !m_state.m_kept.stepOf(*bodies[i])) m_state.bringHome(*bodies[i]);
+}
+
+// Brings a body home whose step has begun without its nodes, and predicts them. The broad phase keeps the bounds.
+void SoftBodySolver::Work::bringHome(btSoftBody& body)
+{
+    m_state.bringHome(body);
+    const btVector3 bounds[2] = {body.m_bounds[0], body.m_bounds[1]};
+    predictOne(body, &m_threads, [this](btSoftBody& plain) { predictAndLeaveTree(plain, m_dt, &m_threads); });
+    std::copy(bounds, bounds + 2, body.m_bounds);
+}
+
+// Returns whether Bullet's collision reads the node trees through this solver alone.
+bool SoftBodySolver::Work::seesReads(const Bodies& bodies) const
+{
+    for (int i = 0; i < bodies.size(); ++i)
+        if (bodies[i]->getSoftBodySolver() != &m_owner) return false;
+    return true;
+}
+
+// Predicts the body, and updates its node tree unless that can wait until something reads it.
+void SoftBodySolver::Work::predictAndLeaveTree(btSoftBody& body, btScalar dt, ThreadTeam* threads)
+{
+    predictPlain(body, dt, threads);
+    NodeTree* const tree = m_state.nodeTreeOf(&m_owner, body);
+    if (tree) *tree = m_seesReads ? NodeTree::Behind : NodeTree::Current;
+    if (!tree || !m_seesReads) updateNodeTree(body, threads);
+}
+
+// Predicts the bodies, plain ones side by side, and keeps what substeps need of the step's start. Bullet predicts the
+// others on this thread: its function may allocate memory and call the app. The broad phase gets all bounds in the
+// order of the bodies. Allocates no memory.
+void SoftBodySolver::Work::predict(const Bodies& bodies, btScalar dt)
+{
+    m_dt = dt;
+    m_seesReads = seesReads(bodies);
+    beginAway(bodies);
+    const auto isAway = [this](const btSoftBody& body) { return m_state.m_kept.isAway(body); };
+    const auto isPlainAt = [&](int i)
+    { return bodies[i]->isActive() && !isAway(*bodies[i]) && isPlain(*bodies[i], dt); };
+    const auto sizeOf = [&](std::size_t i)
+    { return isPlainAt(int(i)) ? static_cast<std::size_t>(bodies[int(i)]->m_nodes.size()) : 0; };
+    const auto predictAt = [&](std::size_t i, ThreadTeam* threads)
+    { predictOne(*bodies[int(i)], threads, [&](btSoftBody& body) { predictAndLeaveTree(body, dt, threads); }); };
+    const auto byBullet = [&](btSoftBody& body)
+    {
+        if (NodeTree* const tree = m_state.nodeTreeOf(&m_owner, body)) *tree = NodeTree::Bullets;
+        predictByBullet(body, dt);
+    };
+    // Trees of bodies that sleep are read, too.
+    for (int i = 0; i < bodies.size() && !m_seesReads; ++i)
+        m_state.updateNodeTree(*bodies[i]);
+    forBodies(static_cast<std::size_t>(bodies.size()), m_threads, sizeOf, predictAt);
+    for (int i = 0; i < bodies.size(); ++i)
+    {
+        if (!bodies[i]->isActive()) continue;
+        if (isPlainAt(i) || isAway(*bodies[i]))
+            updateBroadphase(*bodies[i]);
+        else
+            predictOne(*bodies[i], nullptr, byBullet);
+    }
+}
+
+// Runs the part of predictMotion() before the prediction.
+void SoftBodySolver::beginStep(btScalar dt, std::vector<StepObstacle>& obstacles)
+{
+    m_work->m_listed = false;
+    m_work->m_taken.clear();
+    m_state->dropNotes(this);  // notes of a dispatch that no solve followed
+    m_state->setStepped(this, m_softBodySet);
+    if (!m_state->ready()) return listPredicted();
+    m_state->m_kept.forgetRemoved(this, m_softBodySet);
+    Stopwatch watch;
+    KinematicMotions& motions = m_state->motionsOf(this);
+    listTaken();
+    motions.beginStep(dt, [this](const btCollisionObject& object, const btTransform& map, btScalar slack)
+                      { return m_state->movedAlong(m_work->m_taken, object, map, slack); });
+    obstacles = wakeReached(motions);
+    listPredicted();
+    m_work->m_parts.m_mirrorMs = watch.lapMs();
+    reserveSubsteps();
+    m_work->m_parts.m_readMs = watch.lapMs();
+}
+
+// Prepares the bodies whose links Drape solves in the coming step, and forgets all others.
+void SoftBodySolver::reserveSubsteps()
+{
+    auto& all = m_work->m_substeps;
+    std::size_t solved = 0;
+    const std::vector<const btSoftBody*> before = std::move(m_work->m_byBullet);
+    std::vector<const btSoftBody*>& byBullet = m_work->m_byBullet;
+    byBullet.clear();
+    for (int i = 0; i < m_softBodySet.size(); ++i)
+    {
+        const btSoftBody& body = *m_softBodySet[i];
+        auto at = all.find(&body);
+        const bool wasByBullet = std::binary_search(before.begin(), before.end(), &body);
+        // Sleeping bodies are not examined: a world at rest may have thousands.
+        const bool isSolved = body.isActive() ? !reasonFromSettings(*m_state, body) : at != all.end();
+        if (isSolved && at == all.end())
+        {
+            at = all.emplace(&body, std::make_unique<SubstepBody>()).first;
+            if (wasByBullet) at->second->changeOver();
+        }
+        if (isSolved)
+        {
+            at->second->reserve(body);
+            ++solved;
+        }
+        else
+        {
+            if (body.isActive() || wasByBullet) byBullet.push_back(&body);
+            if (at != all.end()) all.erase(at);
+        }
+    }
+    std::sort(byBullet.begin(), byBullet.end());
+    if (solved < all.size()) forgetRemoved();
+}
+
+// Forgets bodies that are not in the world any more.
+void SoftBodySolver::forgetRemoved()
+{
+    std::vector<const btSoftBody*> bodies;
+    for (int i = 0; i < m_softBodySet.size(); ++i)
+        bodies.push_back(m_softBodySet[i]);
+    std::sort(bodies.begin(), bodies.end());
+    auto& all = m_work->m_substeps;
+    for (auto at = all.begin(); at != all.end();)
+        at = std::binary_search(bodies.begin(), bodies.end(), at->first) ? std::next(at) : all.erase(at);
+}
+
+// Lists the bodies that Drape takes.
+void SoftBodySolver::listTaken()
+{
+    m_work->m_taken.clear();
+    for (int i = 0; i < m_softBodySet.size(); ++i)
+        if (handlesCloth(*m_state, *m_softBodySet[i])) m_work->m_taken.push_back(m_softBodySet[i]);
+}
+
+// Wakes bodies that a moving obstacle reaches. Returns the obstacles of the step, without resting ones if no such
+// body is awake.
+std::vector<StepObstacle> SoftBodySolver::wakeReached(KinematicMotions& motions)
+{
+    const std::vector<btSoftBody*>& taken = m_work->m_taken;
+    if (taken.empty()) return {};
+    const bool anyAwake =
+        std::any_of(taken.begin(), taken.end(), [](const btSoftBody* body) { return body->isActive(); });
+    std::vector<StepObstacle> obstacles = stepObstacles(*m_state, *taken[0], motions, anyAwake);
+    bool anyWoken = false;
+    for (btSoftBody* body : taken)
+    {
+        if (body->isActive() || !isReached(*m_state, *body, obstacles)) continue;
+        body->activate();
+        anyWoken = true;
+    }
+    return anyWoken && !anyAwake ? stepObstacles(*m_state, *taken[0], motions, true) : obstacles;
+}
+
+// Lists the bodies that were predicted. Bullet's islands and callbacks may wake cloth, or put it to sleep, before it
+// is solved. Predicted bodies are solved with the contacts along their paths; others wait for the next step.
+void SoftBodySolver::listPredicted()
+{
+    std::vector<const btSoftBody*>& predicted = m_work->m_predicted;
+    predicted.clear();
+    for (int i = 0; i < m_softBodySet.size(); ++i)
+        if (m_softBodySet[i]->isActive()) predicted.push_back(m_softBodySet[i]);
+    std::sort(predicted.begin(), predicted.end());
+    m_work->m_listed = true;
+    m_work->m_asleep = static_cast<std::size_t>(m_softBodySet.size()) - predicted.size();
+}
+}  // namespace drape

@@ -1,0 +1,184 @@
+#include "bullet_plugin/adapter/solver/solver_work.h"
+
+#include "bullet_plugin/adapter/solver/body_jobs.h"
+#include "bullet_plugin/core/float_environment.h"
+
+namespace drape
+{
+// Returns the number of nodes of a body whose links the core solves in this step; 0 for others.
+std::size_t SoftBodySolver::Work::substepNodes(const btSoftBody& body) const
+{
+    return isSteppedBody(body) && substepsOf(body) ? static_cast<std::size_t>(body.m_nodes.size()) : 0;
+}
+
+// Calls call(body, recorded, threads) for all bodies whose links the core solves. recorded: the cloth with the body's
+// recorded paths, null without pairs.
+template <class Call>
+void SoftBodySolver::Work::forSubsteps(const Bodies& bodies, const Call& call)
+{
+    const auto sizeOf = [&](std::size_t i) { return substepNodes(*bodies[int(i)]); };
+    const auto work = [&](std::size_t i, ThreadTeam* threads)
+    {
+        const btSoftBody& body = *bodies[int(i)];
+        BodyContacts* const contacts = contactsOf(body);
+        call(body, contacts ? &contacts->m_contacts : nullptr, threads);
+    };
+    forBodies(static_cast<std::size_t>(bodies.size()), m_threads, sizeOf, work);
+}
+
+// Prepares the steps of all bodies whose links the core solves.
+void SoftBodySolver::Work::beginSubsteps(const Bodies& bodies)
+{
+    m_begun = true;
+    forSubsteps(bodies, [this](const btSoftBody& body, ClothContacts* recorded, ThreadTeam* threads)
+                { substepsOf(body)->begin(body, recorded, m_state.mirrorOf(body), threads); });
+}
+
+// Reads the paths of these bodies, unless they are solved.
+void SoftBodySolver::Work::readPaths(const Bodies& bodies)
+{
+    forSubsteps(bodies,
+                [this](const btSoftBody& body, ClothContacts* recorded, ThreadTeam* threads)
+                {
+                    if (!clothOf(body).m_isSolved) substepsOf(body)->readPaths(body, recorded, threads);
+                });
+}
+
+// Returns the cloth of a body whose links the core solves.
+ClothContacts& SoftBodySolver::Work::clothOf(const btSoftBody& body)
+{
+    BodyContacts* const contacts = contactsOf(body);
+    return contacts ? contacts->m_contacts : substepsOf(body)->alone();
+}
+
+// Hands the bodies whose links the core solves to the solver, with their paths, unless they are solved.
+void SoftBodySolver::Work::takeSubsteps(const Bodies& bodies)
+{
+    m_touched.clear();
+    m_free.clear();
+    m_ends.clear();
+    if (!m_begun)
+    {
+        m_rigidBodies.clear();
+        beginSubsteps(bodies);
+    }
+    readPaths(bodies);
+    for (int i = 0; i < bodies.size(); ++i)
+    {
+        btSoftBody& body = *bodies[i];
+        if (substepNodes(body) == 0) continue;
+        const KeptStep* const kept = m_state.m_kept.stepOf(body);
+        SubstepBody& substeps = *substepsOf(body);
+        ClothContacts& cloth = clothOf(body);
+        if (!kept) m_ends.emplace_back(&body, &cloth.m_nodes);
+        if (cloth.m_isSolved) continue;
+        substeps.addRows(body, cloth.m_nodes, m_rigidBodies);
+        const bool isFree = !contactsOf(body) && !substeps.rigidRows();
+        (isFree ? m_free : m_touched).push_back({&cloth, &substeps.substeps(), nullptr, substeps.rigidRows(), kept});
+    }
+}
+
+// Hands the bodies with a pair whose links Bullet solves to the solver.
+void SoftBodySolver::Work::takeForeign(const Bodies& bodies)
+{
+    m_bulletLinks.clear();
+    for (int i = 0; i < bodies.size(); ++i)
+    {
+        btSoftBody& body = *bodies[i];
+        BodyContacts* const contacts = contactsOf(body);
+        if (!contacts || !isSteppedBody(body) || substepsOf(body)) continue;
+        m_bulletLinks.emplace_back(new BulletLinks(body, !contacts->m_contacts.m_features.empty()));
+        m_touched.push_back({&contacts->m_contacts, nullptr, m_bulletLinks.back().get(), nullptr, nullptr});
+    }
+}
+
+// Returns whether the device may solve the step behind the detection, whose contacts then stay there: it is likely to
+// solve all bodies with a pair. A path that meets a surface has to end there before.
+bool SoftBodySolver::Work::mayFollow() const
+{
+    if (!m_stage || m_step->neededHost() || !(m_step->hasPairs() || m_state.m_kept.anyBegun())) return false;
+    const auto fits = [this](const BodyContacts& body)
+    { return substepNodes(*body.m_body) > 0 && !body.m_contacts.m_isFiltered && !body.m_hasDeformedPair; };
+    return std::all_of(m_step->bodies().begin(), m_step->bodies().end(), fits);
+}
+
+// Brings bodies home whose step has begun away and for which isNeeded(body) is true, with one wait.
+template <class Needed>
+void SoftBodySolver::Work::bringHomeWhere(const Bodies& bodies, const Needed& isNeeded)
+{
+    if (!m_state.m_kept.any()) return;
+    std::vector<btSoftBody*> called;
+    for (int i = 0; i < bodies.size(); ++i)
+    {
+        if (!m_state.m_kept.stepOf(*bodies[i]) || !isNeeded(*bodies[i])) continue;
+        m_state.m_kept.callHome(*bodies[i]);
+        called.push_back(bodies[i]);
+    }
+    for (btSoftBody* body : called)
+        bringHomeInStep(*body);
+}
+
+// Brings bodies home that nothing holds, whose momentum the host keeps.
+void SoftBodySolver::Work::bringFreeHome(const Bodies& bodies)
+{
+    bringHomeWhere(bodies,
+                   [this](const btSoftBody& body) { return !contactsOf(body) && !m_state.m_kept.hasPins(body); });
+}
+
+void SoftBodySolver::Work::bringAllHome(const Bodies& bodies)
+{
+    bringHomeWhere(bodies, [](const btSoftBody&) { return true; });
+}
+
+// Brings a body home after the step's begin(), which knows whether it is away.
+void SoftBodySolver::Work::bringHomeInStep(btSoftBody& body)
+{
+    if (BodyContacts* const contacts = contactsOf(body))
+        m_step->bringHome(*contacts);
+    else
+        bringHome(body);
+}
+
+// Brings bodies home that the device has not solved.
+void SoftBodySolver::Work::bringUnsolvedHome(const Bodies& bodies)
+{
+    bringHomeWhere(bodies, [this](const btSoftBody& body) { return !clothOf(body).m_isSolved; });
+}
+
+// Stores the nodes of kept bodies that are at home. Returns the number of bodies whose step began and ended away.
+std::size_t SoftBodySolver::Work::endKept(const Bodies& bodies)
+{
+    std::size_t away = 0;
+    for (int i = 0; i < bodies.size(); ++i)
+    {
+        if (!isSteppedBody(*bodies[i])) continue;
+        away += m_state.m_kept.isAway(*bodies[i]);
+        m_state.m_kept.endStep(*bodies[i], &m_owner, contactsOf(*bodies[i]) != nullptr);
+    }
+    return away;
+}
+
+// Enqueues the step of all bodies behind the detection. Returns false, with nothing enqueued, if that is not possible.
+bool SoftBodySolver::Work::submitBehind(const Bodies& bodies, const ContactSource& source)
+{
+    if (m_step->hasPairs() && !source.onDevice().m_list) return false;
+    takeSubsteps(bodies);
+    return m_solver->submitBehind(m_touched, m_free, source, *m_stage);
+}
+
+// Runs Bullet's solver for the bodies without contacts. Scenes may have thousands of small bodies: the environment
+// changes once for all of them. Returns whether there were any.
+bool SoftBodySolver::Work::solveByBullet(const Bodies& bodies)
+{
+    bool any = false;
+    const CallersFloats floats;
+    for (int i = 0; i < bodies.size(); ++i)
+    {
+        if (!isSteppedBody(*bodies[i]) || contactsOf(*bodies[i]) || substepsOf(*bodies[i])) continue;
+        any = true;
+        m_solved[static_cast<std::size_t>(i)] = 1;
+        bodies[i]->solveConstraints();
+    }
+    return any;
+}
+}  // namespace drape

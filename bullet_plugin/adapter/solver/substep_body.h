@@ -1,0 +1,113 @@
+// One soft body whose motion and links the core solves, in substeps of the step (core/solver/host/substeps.h). Bullet
+// predicts; the core replaces btSoftBody::solveConstraints().
+//
+// Forces and velocities are Bullet's: what predictMotion() adds to a velocity is the acceleration of the step. Links
+// keep the stiffness that Bullet's iterations give them (core/solver/link_strength.h). The body's own numbers are read
+// in every step, so changes between steps count in the next one. Cost: linear in nodes and links.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "BulletSoftBody/btSoftBody.h"
+#include "bullet_plugin/adapter/solver/rigid_bodies.h"
+#include "bullet_plugin/core/solver/cloth_contacts.h"
+#include "bullet_plugin/core/solver/host/substeps.h"
+#include "bullet_plugin/core/threads/thread_team.h"
+
+namespace drape
+{
+class ClothMirror;
+
+class SubstepBody
+{
+public:
+    // Returns why Bullet's own solver must solve the body; null if this class can.
+    static const char* reasonForBullet(const btSoftBody& body);
+    // Returns the same without a look at the links.
+    static const char* reasonFromSettings(const btSoftBody& body);
+    // Returns whether this class can solve the step that has been predicted. Contacts of Bullet's own algorithms count,
+    // too. Reads the links. threads: null for the caller alone.
+    bool canSolveNow(const btSoftBody& body, ThreadTeam* threads);
+
+    // Tells that Bullet solved the step before.
+    void changeOver() { m_substeps.changeOver(); }
+    // Makes room for a step of the body. A body that sleeps needs none.
+    void reserve(const btSoftBody& body);
+    // Records the velocities before the body's prediction, after reserve(). Allocates no memory. threads: null for the
+    // caller alone.
+    void beforePrediction(const btSoftBody& body, ThreadTeam* threads);
+    // Brings the predicted positions to where substeps take free nodes. Call after the prediction, with the same nodes.
+    // Allocates no memory.
+    void afterPrediction(btSoftBody& body, ThreadTeam* threads);
+    // Begins a step whose nodes the device predicts (kept_bodies.h).
+    void predictAway() { m_isPredicted = m_isAway = true; }
+    // Returns whether the step has begun so, and the nodes have not come since.
+    bool isAway() const { return m_isAway; }
+    // Returns how far the end of a free path in substeps lies from Bullet's prediction, per unit of acceleration, s².
+    static btScalar pathShift(const btSoftBody& body);
+    // Returns whether the body has the nodes of the prediction.
+    bool fits(const btSoftBody& body) const;
+    // Leaves the step to Bullet, with Bullet's prediction.
+    void leave(btSoftBody& body);
+    // Returns whether this object solves the coming step.
+    bool isPredicted() const { return m_isPredicted; }
+
+    // Returns the number of substeps: piterations, but at least kLeastSubsteps.
+    static int substepsOf(const btSoftBody& body);
+
+    // Prepares the solver's step, once, after canSolveNow(). recorded: the cloth with the paths that were recorded;
+    // null: alone(). mirror: the body's, null if there is none. It names the mesh of a cloth without pairs, so that a
+    // device's data stays the same.
+    void begin(const btSoftBody& body, ClothContacts* recorded, const ClothMirror* mirror, ThreadTeam* threads);
+    // Gives the recorded paths the ends that the prediction knows more precisely, unless they were moved since. Records
+    // the paths of alone().
+    void readPaths(const btSoftBody& body, ClothContacts* recorded, ThreadTeam* threads);
+    // Adds rows for the rigid bodies that the body touches or hangs on, after readPaths(). nodes: those of it.
+    void addRows(const btSoftBody& body, const SolverNodes& nodes, RigidBodies& bodies);
+    // The cloth of a body without pairs.
+    ClothContacts& alone() { return m_alone; }
+    Substeps& substeps() { return m_substeps; }
+    // Returns the rows of the last addRows(); null if there are none.
+    RigidRows* rigidRows() { return m_rigidRows.empty() ? nullptr : &m_rigidRows; }
+    // Gives the body the solver's result. threads: null for the caller alone.
+    static void end(const SolverNodes& nodes, btSoftBody& body, ThreadTeam* threads);
+
+private:
+    static constexpr int kLeastSubsteps = 2;
+
+    // The predicted end of a node, m, and the way to it without the rounding of positions.
+    struct Prediction
+    {
+        btVector3 m_end, m_way;
+    };
+
+    // A link as Bullet has it: its nodes' indices, Bullet's m_c0 and m_c1, and the stiffness of its material.
+    struct LinkInput
+    {
+        std::uint32_t m_nodes[2];
+        float m_c0, m_c1, m_stiffness;
+    };
+
+    bool readLinks(const btSoftBody& body, ThreadTeam* threads);
+    void cutLinks(const btSoftBody& body);
+    void sortLinks();
+    void setLinks(const btSoftBody& body, ThreadTeam* threads);
+
+    bool m_isPredicted = false;
+    bool m_isAway = false;                // the device predicts the nodes
+    std::vector<btVector3> m_velocities;  // before the prediction, m/s
+    std::vector<Vec3> m_accelerations;    // m/s², constant in the step
+    std::vector<Prediction> m_predictions;
+    std::vector<LinkInput> m_links;  // by link, as last read
+    int m_iterations = 0;            // piterations when they were set
+    bool m_isSorted = false;         // the links' nodes are those of the sweeps
+    bool m_isSet = false;            // the links' lengths and strengths are, too
+    ClothParts m_parts;              // by which they are sorted
+    ClothContacts m_alone;           // for steps without pairs
+    ClothFaces m_noFaces;
+    Substeps m_substeps;
+    RigidRows m_rigidRows;
+};
+}  // namespace drape

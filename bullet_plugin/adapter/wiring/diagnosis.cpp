@@ -1,0 +1,231 @@
+#include "bullet_plugin/adapter/wiring/diagnosis.h"
+
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <memory>
+#include <vector>
+
+#include "BulletCollision/CollisionDispatch/btCollisionWorld.h"
+#include "BulletCollision/CollisionShapes/btCompoundShape.h"
+#include "bullet_plugin/adapter/pairs/eligibility.h"
+#include "bullet_plugin/adapter/pairs/margins.h"
+#include "bullet_plugin/adapter/mirrors/mesh_reader.h"
+#include "bullet_plugin/adapter/wiring/plugin_state.h"
+#include "bullet_plugin/adapter/mirrors/solid_links.h"
+#include "bullet_plugin/adapter/wiring/wiring.h"
+#include "bullet_plugin/core/probe/mesh_probe.h"
+#include "kernels/lib/geometry/vec3.h"
+
+namespace drape
+{
+namespace
+{
+// Maximum and minimum thickness, in mean edge lengths of the cloth.
+constexpr double kMostEdges = 4;
+constexpr double kLeastEdges = 0.005;
+
+template <class... Values>
+std::string format(const char* text, Values... values)
+{
+    char line[512];
+    std::snprintf(line, sizeof(line), text, values...);
+    return line;
+}
+
+bool mayCollide(const btCollisionObject& a, const btCollisionObject& b)
+{
+    const btBroadphaseProxy *const p = a.getBroadphaseHandle(), *const q = b.getBroadphaseHandle();
+    return p && q && (p->m_collisionFilterGroup & q->m_collisionFilterMask) &&
+           (q->m_collisionFilterGroup & p->m_collisionFilterMask);
+}
+
+// Returns the mean length of the body's face edges, or of its links if it has no faces.
+double meanEdgeOf(const btSoftBody& cloth)
+{
+    double sum = 0;
+    for (int i = 0; cloth.m_faces.size() == 0 && i < cloth.m_links.size(); ++i)
+        sum += double((cloth.m_links[i].m_n[0]->m_x - cloth.m_links[i].m_n[1]->m_x).length());
+    if (cloth.m_faces.size() == 0) return sum / std::max(1, cloth.m_links.size());
+    for (int f = 0; f < cloth.m_faces.size(); ++f)
+        for (int k = 0; k < 3; ++k)
+            sum += double((cloth.m_faces[f].m_n[k]->m_x - cloth.m_faces[f].m_n[(k + 1) % 3]->m_x).length());
+    return sum / std::max(1, 3 * cloth.m_faces.size());
+}
+
+SolidLinks solidLinksOf(const btSoftBody& cloth)
+{
+    std::vector<std::int32_t> faces;
+    for (int f = 0; f < cloth.m_faces.size(); ++f)
+        for (const btSoftBody::Node* node : cloth.m_faces[f].m_n)
+            faces.push_back(nodeIndex(cloth, node));
+    SolidLinks links;
+    links.read(cloth, faces);
+    return links;
+}
+
+class Diagnosis
+{
+public:
+    Diagnosis(const Plugin& plugin, const btCollisionWorld& world) : m_plugin(plugin), m_world(world) {}
+
+    std::string text()
+    {
+        addSetup();
+        const btCollisionObjectArray& objects = m_world.getCollisionObjectArray();
+        for (int i = 0; i < objects.size(); ++i)
+        {
+            btSoftBody* const cloth = btSoftBody::upcast(objects[i]);
+            if (!cloth) continue;
+            m_plugin.state()->m_kept.fetch(*cloth);
+            addCloth(*cloth);
+        }
+        const std::string status = statusText(m_plugin.statistics().m_status);
+        if (!status.empty()) add("the last step: " + status);
+        return m_text;
+    }
+
+private:
+    void add(const std::string& line) { m_text += (m_text.empty() ? "" : "\n") + line; }
+    void addSetup();
+    void addCloth(const btSoftBody& cloth);
+    void addPair(const btSoftBody& cloth, const btCollisionObject& object, const btCollisionShape& shape,
+                 const btTransform& pose);
+    void addIntersections(const btSoftBody& cloth, const btCollisionObject& object, const btCollisionShape& shape,
+                          const btTransform& pose);
+    MeshProbe* probeOf(const btCollisionShape& shape);
+
+    const Plugin& m_plugin;
+    const btCollisionWorld& m_world;
+    std::string m_text;
+    std::map<const btCollisionShape*, std::unique_ptr<MeshProbe>> m_probes;
+};
+
+void Diagnosis::addSetup()
+{
+    if (!m_plugin.ready()) return add("Drape is off: " + m_plugin.error());
+    if (!m_plugin.error().empty()) add(m_plugin.error());
+    btDispatcher* const dispatcher = const_cast<btDispatcher*>(m_world.getDispatcher());
+    if (!dispatcher || pluginOf(*dispatcher) != m_plugin.state().get())
+        add("the world's dispatcher does not have Drape's algorithm: make it with a drape::CollisionConfiguration of "
+            "this plugin, or call drape::install()");
+}
+
+void Diagnosis::addCloth(const btSoftBody& cloth)
+{
+    const void* const name = &cloth;
+    if (!m_plugin.state()->ownsSolver(cloth.getSoftBodySolver()))
+        add(format("soft body %p: the world's soft body solver is not a drape::SoftBodySolver of this plugin", name));
+    int invalid = 0;
+    for (int i = 0; i < cloth.m_nodes.size(); ++i)
+        invalid += !std::isfinite(cloth.m_nodes[i].m_x.length2());
+    if (invalid > 0) add(format("soft body %p: %d nodes are not finite", name, invalid));
+    std::map<std::string, int> reasons;
+    const btCollisionObjectArray& objects = m_world.getCollisionObjectArray();
+    for (int i = 0; i < objects.size(); ++i)
+    {
+        const btCollisionObject& object = *objects[i];
+        if (btSoftBody::upcast(&object) || !object.getCollisionShape() || !mayCollide(cloth, object)) continue;
+        const std::string reason = m_plugin.whyStock(&cloth, &object);
+        if (!reason.empty()) ++reasons[reason];
+        addPair(cloth, object, *object.getCollisionShape(), object.getWorldTransform());
+    }
+    for (const auto& [reason, count] : reasons)
+        add(format("soft body %p: Bullet's own collision has its pairs with %d %s: %s", name, count,
+                   count == 1 ? "object" : "objects", reason.c_str()));
+}
+
+// The leaves of the object's shape that Drape handles.
+void Diagnosis::addPair(const btSoftBody& cloth, const btCollisionObject& object, const btCollisionShape& shape,
+                        const btTransform& pose)
+{
+    if (shape.isCompound())
+    {
+        const btCompoundShape& compound = static_cast<const btCompoundShape&>(shape);
+        for (int i = 0; i < compound.getNumChildShapes(); ++i)
+            addPair(cloth, object, *compound.getChildShape(i), pose * compound.getChildTransform(i));
+        return;
+    }
+    if (reasonForStock(*m_plugin.state(), cloth, object, shape)) return;
+    const std::string pair =
+        format("soft body %p and object %p: ", static_cast<const void*>(&cloth), static_cast<const void*>(&object));
+    const std::string margins = marginRemark(cloth, shape);
+    if (!margins.empty()) add(pair + margins);
+    const double thickness = double(thicknessOf(cloth, shape)), edge = meanEdgeOf(cloth);
+    if (thickness > kMostEdges * edge)
+        add(pair +
+            format("the thickness (%g m) is %.3g times the mean edge of the cloth (%g m); pairs grow with its square",
+                   thickness, thickness / edge, edge));
+    if (thickness < kLeastEdges * edge)
+        add(pair + format("the thickness (%g m) is a %.0fth of the mean edge of the cloth (%g m)", thickness,
+                          edge / thickness, edge));
+    addIntersections(cloth, object, shape, pose);
+}
+
+MeshProbe* Diagnosis::probeOf(const btCollisionShape& shape)
+{
+    std::unique_ptr<MeshProbe>& probe = m_probes[&shape];
+    if (probe) return probe.get();
+    WorldMesh mesh;
+    readMesh(shape, btTransform::getIdentity(), mesh);
+    if (mesh.m_triangles.empty()) return nullptr;
+    MeshDescription description;
+    description.m_triangles = mesh.m_triangles.data();
+    description.m_triangleCount = mesh.m_triangles.size() / 3;
+    description.m_positions = mesh.m_positions.data();
+    description.m_vertexCount = mesh.m_positions.size() / 3;
+    probe = std::make_unique<MeshProbe>(description);
+    return probe.get();
+}
+
+// Checks the two at their current positions, where the next step begins.
+void Diagnosis::addIntersections(const btSoftBody& cloth, const btCollisionObject& object,
+                                 const btCollisionShape& shape, const btTransform& pose)
+{
+    MeshProbe* const probe = probeOf(shape);
+    if (!probe) return;
+    const auto placeOf = [&](const btSoftBody::Node& node)
+    {
+        const btVector3 seen = pose.inverse() * node.m_x;
+        return vec3(float(seen.x()), float(seen.y()), float(seen.z()));
+    };
+    std::size_t pairs = 0, inside = 0;
+    std::vector<std::uint32_t> meeting;
+    for (int f = 0; f < cloth.m_faces.size(); ++f)
+    {
+        const Vec3 corners[3] = {placeOf(*cloth.m_faces[f].m_n[0]), placeOf(*cloth.m_faces[f].m_n[1]),
+                                 placeOf(*cloth.m_faces[f].m_n[2])};
+        probe->listMeeting(corners, meeting);
+        pairs += meeting.size();
+    }
+    const SolidLinks links = solidLinksOf(cloth);
+    for (std::size_t i = 0; i < links.nodes().size(); i += 2)
+    {
+        const Vec3 end = placeOf(cloth.m_nodes[links.nodes()[i + 1]]);
+        const Vec3 corners[3] = {placeOf(cloth.m_nodes[links.nodes()[i]]), end, end};
+        probe->listMeeting(corners, meeting);
+        pairs += meeting.size();
+    }
+    const bool closed = probe->isClosed();
+    for (int i = 0; closed && i < cloth.m_nodes.size(); ++i)
+        inside += probe->isInside(placeOf(cloth.m_nodes[i]));
+    const std::string pair =
+        format("soft body %p and object %p: ", static_cast<const void*>(&cloth), static_cast<const void*>(&object));
+    if (pairs > 0)
+        add(pair + format("%zu pairs of the cloth's faces or links and the mesh's triangles intersect, %zu of %d nodes "
+                          "are inside; %s",
+                          pairs, inside, cloth.m_nodes.size(),
+                          closed ? "the mesh is closed, so that nodes that are not pinned are pushed out"
+                                 : "the mesh is open, so that the right side is unknown"));
+    else if (inside == std::size_t(cloth.m_nodes.size()) && inside > 0)
+        add(pair +
+            "the cloth is wholly inside the closed mesh, and stays there unless Plugin::setOneSided declares "
+            "only its front solid");
+}
+}  // namespace
+
+std::string diagnosisOf(const Plugin& plugin, const btCollisionWorld& world)
+{
+    return Diagnosis(plugin, world).text();
+}
+}  // namespace drape

@@ -1,0 +1,174 @@
+#include "momentum.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "bullet_plugin/core/solver/rigid_rows.h"
+#include "substeps.h"
+
+namespace drape
+{
+namespace
+{
+// Maximum energy of the motion that is given back, as a share of the energy of the motion about the centre of mass.
+// Links take far less in a step. A cloth that has collapsed to a point is not spun up.
+constexpr double kMostEnergy = 0.01;
+
+// Share of the trace that is added to the moments of inertia: those of a rope about its own line are 0.
+constexpr double kSoftening = 1e-6;
+
+struct Vec3d
+{
+    double x = 0, y = 0, z = 0;
+};
+
+Vec3d wide(Vec3 v)
+{
+    return {double(v.x), double(v.y), double(v.z)};
+}
+
+Vec3 narrow(Vec3d v)
+{
+    return vec3(float(v.x), float(v.y), float(v.z));
+}
+
+Vec3d operator+(Vec3d a, Vec3d b)
+{
+    return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+
+Vec3d operator-(Vec3d a, Vec3d b)
+{
+    return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+
+Vec3d operator*(double s, Vec3d v)
+{
+    return {s * v.x, s * v.y, s * v.z};
+}
+
+Vec3d cross(Vec3d a, Vec3d b)
+{
+    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+double dot(Vec3d a, Vec3d b)
+{
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+// Shares that damping leaves at the step's end.
+struct Kept
+{
+    double m_before = 1;    // share of the momentum at the step's start
+    double m_received = 0;  // share of what the cloth receives evenly over the step
+
+    explicit Kept(const Substeps& substeps)
+    {
+        for (int i = 0; i < substeps.count(); ++i)
+        {
+            m_before *= double(substeps.kept());
+            m_received += m_before / substeps.count();
+        }
+    }
+};
+
+// Sums over the nodes, about the first node's start.
+struct Sums
+{
+    double m_mass = 0, m_energy = 0;      // energy: twice the kinetic one
+    Vec3d m_moment, m_momentum;           // moments of mass; linear momentum at the step's end
+    Vec3d m_missing, m_missingTurning;    // linear and angular momentum
+    double m_xx = 0, m_yy = 0, m_zz = 0;  // second moments of mass
+    double m_yz = 0, m_zx = 0, m_xy = 0;
+};
+
+// Adds up the nodes; what they lack is the momentum at the start and what forces gave, less the momentum at the end.
+// Returns false if a node is fixed.
+bool sumUp(const SolverNodes& nodes, const Substeps& substeps, const Kept& kept, Sums& sums)
+{
+    const double time = double(substeps.time()), given = kept.m_received * time;
+    // A node begins with the velocity way / time - pathTime() * acceleration. Substeps accelerate nodes where they
+    // start.
+    const double perWay = kept.m_before / time, perForce = given - kept.m_before * double(substeps.pathTime());
+    const double inMotion = given * 0.5 * (1 - 1 / double(substeps.count()));
+    const Vec3d origin = wide(nodes.start(0));
+    for (std::size_t i = 0; i < nodes.count(); ++i)
+    {
+        const SolverNode& node = nodes.nodes()[i];
+        if (!(node.m_inverseMass > 0)) return false;
+        const double mass = 1 / double(node.m_inverseMass);
+        const Vec3d force = wide(substeps.accelerations()[i]), velocity = wide(nodes.velocity(i));
+        const Vec3d start = wide(nodes.start(i)) - origin, moved = wide(node.m_displacement), end = start + moved;
+        const Vec3d missing = mass * (perWay * wide(nodes.way(i)) + perForce * force - velocity);
+        const Vec3d momentum = mass * velocity, moment = mass * end;
+        sums.m_mass += mass;
+        sums.m_energy += dot(momentum, velocity);
+        sums.m_moment = sums.m_moment + moment;
+        sums.m_momentum = sums.m_momentum + momentum;
+        sums.m_missing = sums.m_missing + missing;
+        sums.m_missingTurning =
+            sums.m_missingTurning + cross(start, missing) + cross(moved, (mass * inMotion) * force - momentum);
+        sums.m_xx += moment.x * end.x;
+        sums.m_yy += moment.y * end.y;
+        sums.m_zz += moment.z * end.z;
+        sums.m_yz += moment.y * end.z;
+        sums.m_zx += moment.z * end.x;
+        sums.m_xy += moment.x * end.y;
+    }
+    return true;
+}
+
+// Takes off what the cloth gave to rigid bodies.
+void subtractGiven(const RigidRows& rigid, Vec3d origin, const Kept& kept, Sums& sums)
+{
+    const Vec3d impulse = kept.m_received * wide(rigid.given().m_impulse);
+    sums.m_missing = sums.m_missing - impulse;
+    sums.m_missingTurning = sums.m_missingTurning - kept.m_received * wide(rigid.given().m_turning) -
+                            cross(wide(rigid.given().m_reference) - origin, impulse);
+}
+
+// Returns the angular velocity of an angular momentum about the centre of mass.
+Vec3d spinOf(const Sums& sums, Vec3d centre, Vec3d turning)
+{
+    const Vec3d moment = sums.m_moment;
+    const double xx = sums.m_xx - moment.x * centre.x, yy = sums.m_yy - moment.y * centre.y;
+    const double zz = sums.m_zz - moment.z * centre.z, yz = sums.m_yz - moment.y * centre.z;
+    const double zx = sums.m_zx - moment.z * centre.x, xy = sums.m_xy - moment.x * centre.y;
+    const double soft = kSoftening * 2 * (xx + yy + zz);
+    const Vec3d rows[3] = {{yy + zz + soft, -xy, -zx}, {-xy, zz + xx + soft, -yz}, {-zx, -yz, xx + yy + soft}};
+    const Vec3d a = cross(rows[1], rows[2]), b = cross(rows[2], rows[0]), c = cross(rows[0], rows[1]);
+    return 1 / dot(rows[0], a) * (turning.x * a + turning.y * b + turning.z * c);
+}
+}  // namespace
+
+bool keepsMomentum(const SolverCloth& cloth)
+{
+    const ClothContacts& contacts = *cloth.m_contacts;
+    if (!cloth.m_substeps || !contacts.m_features.empty() || !contacts.m_limit.regions().empty()) return false;
+    return contacts.m_nodes.count() > 0 && (!cloth.m_rigid || cloth.m_rigid->bodiesYield());
+}
+
+void keepMomentum(const SolverCloth& cloth)
+{
+    SolverNodes& nodes = cloth.m_contacts->m_nodes;
+    const Kept kept(*cloth.m_substeps);
+    const Vec3d origin = wide(nodes.start(0));
+    Sums sums;
+    if (!sumUp(nodes, *cloth.m_substeps, kept, sums)) return;
+    if (cloth.m_rigid) subtractGiven(*cloth.m_rigid, origin, kept, sums);
+    const Vec3d centre = 1 / sums.m_mass * sums.m_moment, drift = 1 / sums.m_mass * sums.m_missing;
+    const Vec3d turning = sums.m_missingTurning - cross(centre, sums.m_missing);
+    const Vec3d spin = spinOf(sums, centre, turning);
+    const double most = kMostEnergy * (sums.m_energy - dot(sums.m_momentum, sums.m_momentum) / sums.m_mass);
+    const double added = dot(spin, turning) + dot(drift, sums.m_missing);
+    if (!(added > 0) || !std::isfinite(added) || !(most > 0)) return;
+    const double share = std::min(1.0, std::sqrt(most / added));
+    const Vec3 turned = narrow(share * spin), moved = narrow(share * drift), about = narrow(centre + origin);
+    for (std::size_t i = 0; i < nodes.count(); ++i)
+    {
+        const Vec3 arm = vec3Add(vec3Sub(nodes.start(i), about), nodes.displacement(i));
+        nodes.addVelocity(i, vec3Add(moved, vec3Cross(turned, arm)));
+    }
+}
+}  // namespace drape

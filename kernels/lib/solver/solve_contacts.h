@@ -1,0 +1,570 @@
+// Sweeps over the contacts of a group, bucket by bucket (core/solver/host/contact_group.h).
+//
+// The features of a bucket share no node, so work-items visit its contacts side by side, one contact each. The contacts
+// of one feature are projected in order: in each round the first one that is due.
+#ifndef DRAPE_LIB_SOLVE_CONTACTS_H
+#define DRAPE_LIB_SOLVE_CONTACTS_H
+
+#include "acting_contact.h"
+#include "../geometry/rigid_motion.h"
+#include "solve_view.h"
+
+// A sweep over contacts: its stage, counted from 1, and where obstacles stand.
+typedef struct Sweep
+{
+    uint m_stage;
+    float m_passed;      // share of the step that has passed
+    float m_tolerated;   // m, violation that a projection leaves
+    float m_slack;       // m, bound on how far levels lie above those at the step's end
+    float m_relaxation;  // share of a violation that a projection corrects
+    uint m_round;        // see nextRound()
+    uint m_pending;      // the word that says whether a contact is due in this round
+    float m_worst;       // m, worst violation that the work-item met
+} Sweep;
+
+DRAPE_HOT_FUNCTION void beginSweep(const Solve* solve, const uint substep, const int closes, Sweep* sweep)
+{
+    sweep->m_stage = substep + 1;
+    sweep->m_passed = closes ? 1.0f : (float)(substep + 1) / (float)solve->m_cloth->m_substeps;
+    sweep->m_tolerated = closes ? solve->m_cloth->m_tolerated : 0.0f;
+    sweep->m_slack = (1.0f - sweep->m_passed) * solve->m_cloth->m_retreat;
+    sweep->m_relaxation = closes ? 1.0f : DRAPE_TURN_RELAXATION;
+    sweep->m_worst = 0.0f;
+}
+
+// Begins sweeps in a substep. The rounds go on.
+DRAPE_HOT_FUNCTION void beginSubstep(const Solve* solve, const uint substep, Sweep* sweep)
+{
+    beginSweep(solve, substep, 0, sweep);
+}
+
+// Begins a sweep that closes the contacts.
+DRAPE_HOT_FUNCTION void beginClosing(const Solve* solve, Sweep* sweep)
+{
+    beginSweep(solve, solve->m_cloth->m_substeps, 1, sweep);
+}
+
+DRAPE_HOT_FUNCTION SolveContact loadContact(const Solve* solve, const uint index)
+{
+    __global const float4* words = (__global const float4*)(solve->m_sorted + index);
+    const float4 first = words[0], second = words[1], third = words[2];
+    SolveContact contact;
+    contact.m_normal = xyz(first);
+    contact.m_level = first.w;
+    contact.m_weights[0] = second.x;
+    contact.m_weights[1] = second.y;
+    contact.m_flags = as_uint(second.z);
+    contact.m_pushing = as_uint(second.w);
+    contact.m_nodes[0] = as_uint(third.x);
+    contact.m_nodes[1] = as_uint(third.y);
+    contact.m_nodes[2] = as_uint(third.z);
+    contact.m_rank = as_uint(third.w);
+    return contact;
+}
+
+static ContactPlane foundPlane(__global const Contact* contact)
+{
+    ContactPlane plane;
+    plane.m_normal = vec3Load(contact->m_normal, 0);
+    plane.m_point = vec3Load(contact->m_point, 0);
+    for (int k = 0; k < 3; ++k)
+        plane.m_weights[k] = contact->m_weights[k];
+    return plane;
+}
+
+static uint firstOf(__global const MeshOffsets* mesh, const uint kind)
+{
+    if (kind == DRAPE_NODE_FACE) return mesh->m_triangle;
+    return kind == DRAPE_FACE_VERTEX ? mesh->m_vertex : mesh->m_edge;
+}
+
+// Returns the surface of a contact's obstacle.
+static __global const SolveSurface* surfaceOf(const Solve* solve, __global const Contact* contact)
+{
+    const SolveRange range = solve->m_cloth->m_surfaces;
+    __global const SolveSurface* first = solve->m_surfaces + range.m_first;
+    if (range.m_count == 1) return first;
+    // The last obstacle that begins with the feature or before it. Obstacles without such features begin where the next
+    // one does.
+    uint low = 0, high = solve->m_obstacleCount;
+    while (high - low > 1)
+    {
+        const uint middle = (low + high) / 2;
+        if (firstOf(solve->m_obstacles + middle, contact->m_kind) <= contact->m_obstacleFeature)
+            low = middle;
+        else
+            high = middle;
+    }
+    uint least = 0, most = range.m_count;
+    while (most - least > 1)
+    {
+        const uint middle = (least + most) / 2;
+        if (first[middle].m_obstacle <= low)
+            least = middle;
+        else
+            most = middle;
+    }
+    return first + least;
+}
+
+static Vec3 carriedStart(__global const SolveSurface* surface, const Vec3 start)
+{
+    return surface->m_moves ? mapPoint(surface->m_map, start) : start;
+}
+
+static FeatureNodes featureNodes(const Solve* solve, const SolveContact* contact, __global const SolveSurface* surface)
+{
+    FeatureNodes nodes;
+    nodes.m_count = DRAPE_CONTACT_COUNT(contact->m_flags);
+    nodes.m_moves = surface->m_moves;
+    for (uint k = 0; k < 3; ++k)
+    {
+        __global const NodePath* path = solve->m_paths + contact->m_nodes[k];
+        nodes.m_nodes[k] = contact->m_nodes[k];
+        nodes.m_starts[k] = path->m_start;
+        nodes.m_carried[k] = carriedStart(surface, path->m_start);
+        nodes.m_ends[k] = vec3Add(path->m_start, path->m_way);
+        nodes.m_inverseMasses[k] = path->m_inverseMass;
+    }
+    return nodes;
+}
+
+// The nodes' displacements of a feature; entries beyond the last node repeat the first.
+typedef struct Displacements
+{
+    Vec3 m_nodes[3];
+} Displacements;
+
+DRAPE_HOT_FUNCTION Displacements displacementsOf(const Solve* solve, const SolveContact* contact)
+{
+    Displacements at;
+    for (int k = 0; k < 3; ++k)
+        at.m_nodes[k] = loadNode(solve, contact->m_nodes[k]).m_displacement;
+    return at;
+}
+
+// Returns an upper bound of a contact's violation once the obstacle stands at the step's end, m.
+DRAPE_HOT_FUNCTION float excessOf(const SolveContact* contact, const Displacements* at)
+{
+    const Vec3 first = at->m_nodes[0];
+    const Vec3 second = vec3Scale(vec3Sub(at->m_nodes[1], first), contact->m_weights[0]);
+    const Vec3 third = vec3Scale(vec3Sub(at->m_nodes[2], first), contact->m_weights[1]);
+    return contact->m_level - vec3Dot(contact->m_normal, vec3Add(first, vec3Add(second, third)));
+}
+
+// Makes the row of a contact.
+DRAPE_RARE_FUNCTION void makeActing(const Solve* solve, const uint index, const SolveContact* contact)
+{
+    __global const Contact* found = solve->m_contacts + solve->m_order[index];
+    __global const SolveSurface* surface = surfaceOf(solve, found);
+    const FeatureNodes nodes = featureNodes(solve, contact, surface);
+    const ContactPlane plane = foundPlane(found);
+    ContactSettings settings;
+    settings.m_thickness = surface->m_thickness;
+    settings.m_friction = surface->m_friction;
+    settings.m_hardness = solve->m_cloth->m_hardness;
+    settings.m_perSecond = solve->m_cloth->m_perSecond;
+    solve->m_acting[index] = actingContact(&nodes, &plane, &settings, contactGaps(&nodes, &plane, &settings));
+    solve->m_sorted[index].m_flags = contact->m_flags | DRAPE_CONTACT_MADE;
+}
+
+// Renews the plane of a contact that turns.
+DRAPE_RARE_FUNCTION void renew(const Solve* solve, const uint index, const SolveContact* contact, const uint stage,
+                               const float passed)
+{
+    ActingContact acting = solve->m_acting[index];
+    __global const Contact* found = solve->m_contacts + solve->m_order[index];
+    const FeatureNodes nodes = featureNodes(solve, contact, surfaceOf(solve, found));
+    const Displacements at = displacementsOf(solve, contact);
+    const ContactPlane before = foundPlane(found);
+    ContactPlane plane;
+    acting.m_stage = stage;
+    const int turned = renewPlane(&acting, &nodes, at.m_nodes, passed, &before, &plane);
+    solve->m_acting[index] = acting;
+    if (!turned) return;
+    __global SolveContact* bound = solve->m_sorted + index;
+    bound->m_normal = plane.m_normal;
+    bound->m_level = acting.m_row.m_level + solve->m_cloth->m_margin;
+    bound->m_weights[0] = plane.m_weights[1];
+    bound->m_weights[1] = plane.m_weights[2];
+}
+
+// Loads what pushes need of a contact, as vectors: all but the nodes.
+DRAPE_HOT_FUNCTION ActingContact loadActing(const Solve* solve, const uint index)
+{
+    __global const float4* words = (__global const float4*)(solve->m_acting + index);
+    const float4 normal = words[0], carried = words[1], held = words[2], weights = words[3], shares = words[4];
+    const float4 rest = words[6];
+    ActingContact acting;
+    acting.m_row.m_normal = xyz(normal);
+    acting.m_row.m_level = normal.w;
+    acting.m_row.m_carried = xyz(carried);
+    acting.m_row.m_advance = carried.w;
+    acting.m_row.m_held = xyz(held);
+    acting.m_row.m_multiplier = held.w;
+    acting.m_row.m_weights[0] = weights.x;
+    acting.m_row.m_weights[1] = weights.y;
+    acting.m_row.m_weights[2] = weights.z;
+    acting.m_row.m_friction = weights.w;
+    acting.m_row.m_shares[0] = shares.x;
+    acting.m_row.m_shares[1] = shares.y;
+    acting.m_row.m_shares[2] = shares.z;
+    acting.m_row.m_inverseMobility = shares.w;
+    acting.m_row.m_mended = rest.x;
+    acting.m_stage = as_uint(rest.w);
+    return acting;
+}
+
+DRAPE_HOT_FUNCTION Vec3 rowWay(const ActingContact* acting, const uint count, const Displacements* at)
+{
+    Vec3 way = vec3Scale(at->m_nodes[0], acting->m_row.m_weights[0]);
+    if (count > 1) way = vec3AddScaled(way, at->m_nodes[1], acting->m_row.m_weights[1]);
+    if (count > 2) way = vec3AddScaled(way, at->m_nodes[2], acting->m_row.m_weights[2]);
+    return way;
+}
+
+// Loads the row of a contact. Its pushes begin anew in each stage.
+DRAPE_HOT_FUNCTION ActingContact loadRow(const Solve* solve, const uint index, const SolveContact* contact,
+                                         const uint stage)
+{
+    ActingContact acting = loadActing(solve, index);
+    if (contact->m_pushing != stage)
+    {
+        acting.m_row.m_multiplier = 0.0f;
+        acting.m_row.m_held = vec3(0.0f, 0.0f, 0.0f);
+    }
+    return acting;
+}
+
+// Makes the row of a contact if it has none, and loads it.
+DRAPE_HOT_FUNCTION ActingContact openRow(const Solve* solve, const uint index, const SolveContact* contact,
+                                         const uint stage)
+{
+    if (!(contact->m_flags & DRAPE_CONTACT_MADE))
+    {
+        const Solve view = *solve;
+        const SolveContact copy = *contact;
+        makeActing(&view, index, &copy);
+    }
+    return loadRow(solve, index, contact, stage);
+}
+
+// Pushes the nodes of a contact with an open row. Returns whether there was anything to do.
+DRAPE_HOT_FUNCTION int pushContact(const Solve* solve, const uint index, const SolveContact* contact,
+                                   ActingContact* acting, Sweep* sweep)
+{
+    const uint count = DRAPE_CONTACT_COUNT(contact->m_flags);
+    const Displacements at = displacementsOf(solve, contact);
+    Vec3 shift;
+    if (!pushRow(&acting->m_row, rowWay(acting, count, &at), sweep->m_passed, sweep->m_tolerated, sweep->m_relaxation,
+                 &sweep->m_worst, &shift))
+        return 0;
+    const Vec3 held = acting->m_row.m_held;
+    ((__global float4*)(solve->m_acting + index))[2] = (float4)(held.x, held.y, held.z, acting->m_row.m_multiplier);
+    for (uint k = 0; k < count; ++k)
+        nodeAt(solve, contact->m_nodes[k])->m_displacement =
+            vec3AddScaled(at.m_nodes[k], shift, acting->m_row.m_shares[k]);  // the inverse mass beside it stays
+    if (contact->m_pushing == sweep->m_stage) return 1;
+    for (uint k = 0; k < count; ++k)
+        solve->m_states[contact->m_nodes[k]].m_shifted = 1;
+    solve->m_acting[index].m_pushed = 1;
+    solve->m_sorted[index].m_pushing = sweep->m_stage;
+    return 1;
+}
+
+// Projects a contact that is violated or pushes, with an open row. Returns whether it pushed.
+DRAPE_HOT_FUNCTION int projectContact(const Solve* solve, const uint index, const SolveContact* contact,
+                                      ActingContact* acting, Sweep* sweep)
+{
+    if (!(acting->m_row.m_inverseMobility > 0.0f)) return 0;
+    if ((contact->m_flags & DRAPE_CONTACT_TURNS) && acting->m_stage != sweep->m_stage)
+    {
+        const Displacements at = displacementsOf(solve, contact);
+        const Vec3 way = rowWay(acting, DRAPE_CONTACT_COUNT(contact->m_flags), &at);
+        const float level = acting->m_row.m_level - (1.0f - sweep->m_passed) * acting->m_row.m_advance;
+        if (level - vec3Dot(acting->m_row.m_normal, way) > 0.0f)
+        {
+            const Solve view = *solve;
+            const SolveContact copy = *contact;
+            renew(&view, index, &copy, sweep->m_stage, sweep->m_passed);
+            *acting = loadRow(solve, index, contact, sweep->m_stage);
+            if (!(acting->m_row.m_inverseMobility > 0.0f)) return 0;
+        }
+    }
+    return pushContact(solve, index, contact, acting, sweep);
+}
+
+// Returns whether the contact is violated or pushes.
+DRAPE_HOT_FUNCTION int isDue(const Solve* solve, const SolveContact* contact, const Sweep* sweep)
+{
+    if (contact->m_pushing == sweep->m_stage) return 1;
+    const Displacements at = displacementsOf(solve, contact);
+    return excessOf(contact, &at) + sweep->m_slack > 0.0f;
+}
+
+// Marks order the contacts of a feature within a round: the mark at its first node is the least of the round's tag and
+// a contact's rank. Tags fall from round to round, so that marks of earlier rounds do not count.
+#define DRAPE_NO_MARK 0xffffffffu
+#define DRAPE_MOST_ROUNDS 0xf000u
+#define DRAPE_ROUND_TAG(round) ((0xffffu - (round)) << 16)
+
+DRAPE_HOT_FUNCTION void resetMarks(const Solve* solve, Sweep* sweep)
+{
+    syncNodes();
+#ifdef DRAPE_GLOBAL_NODES
+    for (uint b = 0; b < bucketsOf(solve); ++b)
+        forAll(i, solve->m_shared[DRAPE_SHARED_FIRST + b], solve->m_shared[DRAPE_SHARED_LAST + b])
+            solve->m_marks[solve->m_sorted[i].m_nodes[0]] = DRAPE_NO_MARK;
+#else
+    forAll(i, 0, solve->m_group->m_nodes.m_count) solve->m_marks[i] = DRAPE_NO_MARK;
+#endif
+    if (get_local_id(0) == 0)
+        for (int i = 0; i < 3; ++i)
+            solve->m_shared[DRAPE_SHARED_PENDING + i] = 0;
+    sweep->m_round = sweep->m_pending = 0;
+    syncNodes();
+}
+
+// Returns whether any of the group's contacts is due in this round. Three words take turns, so that one barrier is
+// enough.
+DRAPE_HOT_FUNCTION int anyPending(const Solve* solve, Sweep* sweep)
+{
+    const int any = solve->m_shared[DRAPE_SHARED_PENDING + sweep->m_pending] != 0;
+    if (get_local_id(0) == 0) solve->m_shared[DRAPE_SHARED_PENDING + (sweep->m_pending + 2) % 3] = 0;
+    sweep->m_pending = (sweep->m_pending + 1) % 3;
+    return any;
+}
+
+// Visits contacts side by side, one for each work-item. A contact that acts remembers how many of its feature came
+// before it. Returns how many rounds actSideBySide() needs for the work-item's contact, 0 if it does not act.
+DRAPE_HOT_FUNCTION uint visitSideBySide(const Solve* solve, const uint index, const int exists, Sweep* sweep)
+{
+    SolveContact contact;
+    ActingContact acting;
+    uint before = 0, rounds = 0;
+    int isOpen = exists, hasRow = 0;
+    contact.m_rank = 0;
+    if (isOpen)
+    {
+        contact = loadContact(solve, index);
+        hasRow = contact.m_pushing == sweep->m_stage;
+        if (hasRow) acting = loadActing(solve, index);
+    }
+    for (;;)
+    {
+        const uint tag = DRAPE_ROUND_TAG(sweep->m_round);
+        const uint rank = contact.m_rank & 0xffffu;
+        if (isOpen && (hasRow || isDue(solve, &contact, sweep)))
+        {
+            atomic_min(solve->m_marks + (contact.m_nodes[0] - solve->m_base), tag | rank);
+            solve->m_shared[DRAPE_SHARED_PENDING + sweep->m_pending] = 1;
+        }
+        syncNodes();
+        ++sweep->m_round;
+        if (!anyPending(solve, sweep)) return rounds;
+        if (isOpen)
+        {
+            const uint mark = solve->m_marks[contact.m_nodes[0] - solve->m_base];
+            if ((mark & 0xffff0000u) == tag)
+            {
+                if (rank == (mark & 0xffffu))
+                {
+                    if (!hasRow) acting = openRow(solve, index, &contact, sweep->m_stage);
+                    if (projectContact(solve, index, &contact, &acting, sweep) || hasRow)
+                    {
+                        rounds = before + 1;
+                        if (contact.m_rank >> 16 != before) solve->m_sorted[index].m_rank = rank | before << 16;
+                    }
+                }
+                if (rank <= (mark & 0xffffu)) isOpen = 0;
+                ++before;
+            }
+        }
+        syncNodes();
+    }
+}
+
+// Visits contacts that were loaded, one for each work-item that has any, if they act in this stage. The group takes so
+// many rounds.
+DRAPE_HOT_FUNCTION void actSideBySide(const Solve* solve, const uint index, const int exists,
+                                      const SolveContact* contact, const uint rounds, Sweep* sweep)
+{
+    ActingContact acting;
+    uint round = rounds;
+    if (exists && contact->m_pushing == sweep->m_stage)
+    {
+        acting = loadActing(solve, index);
+        if (acting.m_row.m_inverseMobility > 0.0f) round = contact->m_rank >> 16;
+    }
+    for (uint i = 0; i < rounds; ++i)
+    {
+        if (i == round) pushContact(solve, index, contact, &acting, sweep);
+        syncNodes();
+    }
+}
+
+// Visits contacts one after the other: all, or those that act in this stage.
+DRAPE_HOT_FUNCTION uint visitInOrder(const Solve* solve, const uint first, const uint last, Sweep* sweep,
+                                     const int acts)
+{
+    uint pushed = 0;
+    for (uint i = first; i < last; ++i)
+    {
+        const SolveContact contact = loadContact(solve, i);
+        if (acts ? contact.m_pushing != sweep->m_stage : !isDue(solve, &contact, sweep)) continue;
+        ActingContact acting = openRow(solve, i, &contact, sweep->m_stage);
+        pushed |=
+            acts ? pushContact(solve, i, &contact, &acting, sweep) : projectContact(solve, i, &contact, &acting, sweep);
+    }
+    return pushed;
+}
+
+// The record of a bucket's pushes: the stage in which a contact pushed last, and the rounds that its acting contacts
+// need.
+#define DRAPE_PUSH_RECORD(stage, rounds) ((stage) << 16 | (rounds))
+
+// Takes the group's buckets and their records of pushes into local memory, before the first sweep.
+DRAPE_HOT_FUNCTION void openBuckets(const Solve* solve)
+{
+    forAll(i, 0, bucketsOf(solve))
+    {
+        const SolveBucket bucket = solve->m_buckets[solve->m_group->m_firstBucket + i];
+        solve->m_shared[DRAPE_SHARED_PUSHED + i] = bucket.m_pushed;
+        solve->m_shared[DRAPE_SHARED_FIRST + i] = bucket.m_first;
+        solve->m_shared[DRAPE_SHARED_LAST + i] = bucket.m_first + bucket.m_count;
+    }
+    syncNodes();
+}
+
+// Sweeps over the contacts of a bucket, a number within the group.
+DRAPE_HOT_FUNCTION void sweepBucket(const Solve* solve, const uint index, Sweep* sweep)
+{
+    const uint first = solve->m_shared[DRAPE_SHARED_FIRST + index], last = solve->m_shared[DRAPE_SHARED_LAST + index];
+    if (first == last) return;
+    uint rounds = 0;
+#ifdef DRAPE_CPU
+    rounds = visitInOrder(solve, first, last, sweep, 0);
+#else
+    for (uint start = first; start < last; start += get_local_size(0))
+    {
+        if (sweep->m_round > DRAPE_MOST_ROUNDS) resetMarks(solve, sweep);
+        const uint own = visitSideBySide(solve, start + get_local_id(0), start + get_local_id(0) < last, sweep);
+        rounds = max(rounds, own);
+    }
+#endif
+    // Most contacts find their rounds recorded: atomics on one word wait for each other.
+    const uint record = DRAPE_PUSH_RECORD(sweep->m_stage, rounds);
+    if (rounds > 0 && solve->m_shared[DRAPE_SHARED_PUSHED + index] < record)
+        atomic_max(solve->m_shared + DRAPE_SHARED_PUSHED + index, record);
+}
+
+// Returns the next bucket, from `index` on, in which contacts act in this stage; the number of buckets if there is
+// none.
+DRAPE_HOT_FUNCTION uint nextActing(const Solve* solve, uint index, const uint count, const uint stage)
+{
+    while (index < count && solve->m_shared[DRAPE_SHARED_PUSHED + index] >> 16 != stage)
+        ++index;
+    return index;
+}
+
+// Visits the contacts of all buckets that act in this stage. Loads each bucket's contacts while the one before it is
+// visited.
+DRAPE_HOT_FUNCTION void sweepActing(const Solve* solve, const uint count, Sweep* sweep)
+{
+    uint index = nextActing(solve, 0, count, sweep->m_stage);
+#ifdef DRAPE_CPU
+    for (; index < count; index = nextActing(solve, index + 1, count, sweep->m_stage))
+        visitInOrder(solve, solve->m_shared[DRAPE_SHARED_FIRST + index], solve->m_shared[DRAPE_SHARED_LAST + index],
+                     sweep, 1);
+#else
+    __local const uint* firsts = solve->m_shared + DRAPE_SHARED_FIRST;
+    __local const uint* lasts = solve->m_shared + DRAPE_SHARED_LAST;
+    const uint item = get_local_id(0), width = get_local_size(0);
+    SolveContact loaded;
+    if (index < count && firsts[index] + item < lasts[index]) loaded = loadContact(solve, firsts[index] + item);
+    while (index < count)
+    {
+        const uint last = lasts[index], rounds = solve->m_shared[DRAPE_SHARED_PUSHED + index] & 0xffffu;
+        uint own = firsts[index] + item;
+        SolveContact contact = loaded;
+        index = nextActing(solve, index + 1, count, sweep->m_stage);
+        if (index < count && firsts[index] + item < lasts[index]) loaded = loadContact(solve, firsts[index] + item);
+        actSideBySide(solve, own, own < last, &contact, rounds, sweep);
+        for (own += width; own - item < last; own += width)
+        {
+            if (own < last) contact = loadContact(solve, own);
+            actSideBySide(solve, own, own < last, &contact, rounds, sweep);
+        }
+    }
+#endif
+}
+
+// Sweeps over buckets of the group, then `acting` times over the contacts in all of its buckets that act.
+DRAPE_HOT_FUNCTION void sweepBuckets(const Solve* solve, const uint first, const uint last, const uint acting,
+                                     Sweep* sweep)
+{
+    for (uint i = first; i < last; ++i)
+        sweepBucket(solve, i, sweep);
+    if (acting == 0) return;
+    const float worst = sweep->m_worst;
+    syncNodes();  // the records of pushes
+    for (uint i = 0; i < acting; ++i)
+        sweepActing(solve, bucketsOf(solve), sweep);
+    sweep->m_worst = worst;
+}
+
+// See ContactGroup::endsNear().
+static int endsNear(const Solve* solve, const ActingContact* acting)
+{
+    return acting->m_distance - rowViolation(&acting->m_row, solve->m_nodes, 1.0f) < solve->m_cloth->m_nearDistance;
+}
+
+// Returns whether the features of a contact that turned end near, where they are nearest then.
+DRAPE_RARE_FUNCTION int turnedEndsNear(const Solve* solve, const uint index)
+{
+    ActingContact acting = solve->m_acting[index];
+    const SolveContact contact = solve->m_sorted[index];
+    __global const Contact* found = solve->m_contacts + solve->m_order[index];
+    const FeatureNodes nodes = featureNodes(solve, &contact, surfaceOf(solve, found));
+    const Displacements at = displacementsOf(solve, &contact);
+    const ContactPlane before = foundPlane(found);
+    ContactPlane plane;
+    return !renewPlane(&acting, &nodes, at.m_nodes, 1.0f, &before, &plane) || endsNear(solve, &acting);
+}
+
+// Limits the speeds that contacts of a feature gave. Returns whether one of them ends so near that a surface may have
+// been passed.
+static int limitFeature(const Solve* solve, const uint first, const uint last)
+{
+    int near = 0;
+    for (uint i = first; i < last && (i == first || solve->m_sorted[i].m_rank != 0); ++i)
+    {
+        if (!(solve->m_sorted[i].m_flags & DRAPE_CONTACT_MADE)) continue;
+        const ActingContact acting = solve->m_acting[i];
+        if (acting.m_pushed) limitSpeed(&acting, solve->m_states);
+        near |= endsNear(solve, &acting);
+        const int turns = (solve->m_sorted[i].m_flags & DRAPE_CONTACT_TURNS) != 0;
+        if (turns && acting.m_stage != 0 && !near) near |= turnedEndsNear(solve, i);
+    }
+    return near;
+}
+
+// Limits the speeds that contacts of the group gave: of nodes and faces, or of edges. Only for nodes from the cloth's
+// first on. Returns whether one of the work-item's ends near.
+DRAPE_RARE_FUNCTION int limitSpeeds(const Solve* solve, const int edges)
+{
+    __global const SolveGroup* group = solve->m_group;
+    const uint others = group->m_nodeBuckets + group->m_faceBuckets;
+    const uint first = group->m_firstBucket + (edges ? others : 0), count = edges ? group->m_edgeBuckets : others;
+    int near = 0;
+    for (uint b = first; b < first + count; ++b)
+    {
+        const SolveBucket bucket = solve->m_buckets[b];
+        forAll(i, bucket.m_first, bucket.m_first + bucket.m_count) if (solve->m_sorted[i].m_rank == 0) near |=
+            limitFeature(solve, i, bucket.m_first + bucket.m_count);
+        syncAll();
+    }
+    return near;
+}
+
+#endif
