@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "bullet_plugin/adapter/collision/stretch.h"
-#include "bullet_plugin/core/backends/ordinary_tests.h"
+#include "bullet_plugin/core/lists/ordinary_tests.h"
 #include "scenes/random.h"
 #include "scenes/shapes.h"
 #include "tests/bullet/drop_world.h"

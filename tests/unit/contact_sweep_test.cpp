@@ -1,6 +1,6 @@
 // Contact sweeps that skip most contacts and run on several threads equal sweeps that project every contact in turn,
 // bit for bit.
-#include "bullet_plugin/core/scene/mesh_pool.h"
+#include "bullet_plugin/core/scene/scene.h"
 #include "bullet_plugin/core/solver/host/contact_sweep.h"
 
 #include <gtest/gtest.h>
@@ -106,7 +106,7 @@ public:
         surface.m_moves = motion == Motion::Turns;
         writeTurn(surface.m_map);
         surface.m_friction = 0.5f;
-        m_source.setPipeline(*m_pipeline, {});
+        m_source.set(m_pipeline->scene(), m_pipeline->pairs(), {});
         m_source.nameObstacle(ground, surface);
         m_starts = deformed(m_cloth.m_nodes);
         if (motion == Motion::Deforms) m_source.nameStarts(cloth, m_starts.data());
@@ -135,7 +135,7 @@ private:
             places.push_back(to);
         }
         m_parts.cut(places);
-        m_order.build(m_parts, m_pipeline->cloths().existing(cloth).m_topology);
+        m_order.build(m_parts, m_pipeline->scene().m_cloths.existing(cloth).m_topology);
         m_cloth.start(cloth, m_parts, &m_order);
         m_cloth.m_leastThickness = m_cloth.m_mostThickness = kThickness;
         m_cloth.m_friction = 0.6f;

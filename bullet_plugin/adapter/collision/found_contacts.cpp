@@ -18,13 +18,13 @@ void FoundContacts::nameObstacle(MeshId obstacle, const btCollisionObject* objec
 void FoundContacts::set(Pipeline& pipeline, const ContactList& contacts)
 {
     m_pipeline = &pipeline;
-    m_source.setPipeline(pipeline, contacts);
+    m_source.set(pipeline.scene(), pipeline.pairs(), contacts);
 }
 
 void FoundContacts::setOnDevice(Pipeline& pipeline, const DeviceContacts& contacts)
 {
     m_pipeline = &pipeline;
-    m_source.setOnDevice(pipeline, contacts);
+    m_source.setOnDevice(pipeline.scene(), pipeline.pairs(), contacts);
 }
 
 void FoundContacts::keepList()

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "bullet_plugin/adapter/motion/kinematic_motion.h"
+#include "bullet_plugin/core/pipeline/pipeline.h"
 #include "bullet_plugin/core/solver/contact_source.h"
 #include "drape/plugin.h"
 

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "BulletSoftBody/btSoftBody.h"
-#include "bullet_plugin/core/solver/device/kept_step.h"
+#include "bullet_plugin/core/lists/kept_step.h"
 #include "drape/node_arrays.h"
 
 namespace drape

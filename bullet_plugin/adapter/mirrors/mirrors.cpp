@@ -6,7 +6,7 @@
 #include "bullet_plugin/adapter/pairs/margins.h"
 #include "bullet_plugin/adapter/mirrors/mesh_reader.h"
 #include "bullet_plugin/adapter/vectors.h"
-#include "bullet_plugin/core/scene/mesh_pool.h"
+#include "bullet_plugin/core/scene/scene.h"
 
 namespace drape
 {
@@ -107,7 +107,7 @@ MeshId ClothMirror::refresh(Pipeline& pipeline, const std::function<void()>& rea
         cutParts();
     // Also after a step in which memory ran out before the order was built.
     if (m_id != kNoMesh && m_order.partsRevision() != m_parts.revision())
-        m_order.build(m_parts, pipeline.cloths().existing(m_id).m_topology);
+        m_order.build(m_parts, pipeline.scene().m_cloths.existing(m_id).m_topology);
     return m_id;
 }
 

@@ -6,7 +6,7 @@
 
 #include "bullet_plugin/core/scene/device_views.h"
 #include "bullet_plugin/core/scene/scene.h"
-#include "step_pairs.h"
+#include "bullet_plugin/core/lists/step_pairs.h"
 
 namespace drape
 {

@@ -13,7 +13,7 @@
 #include "cloth_store.h"
 #include "drape/settings.h"
 #include "obstacle_store.h"
-#include "step_pairs.h"
+#include "bullet_plugin/core/lists/step_pairs.h"
 #include "step_result.h"
 
 namespace drape

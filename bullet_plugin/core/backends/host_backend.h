@@ -11,7 +11,7 @@
 #include "drape/settings.h"
 #include "host_placed_obstacles.h"
 #include "step_limits.h"
-#include "step_pairs.h"
+#include "bullet_plugin/core/lists/step_pairs.h"
 #include "step_result.h"
 
 namespace drape

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "bullet_plugin/core/scene/scene.h"
-#include "step_pairs.h"
+#include "bullet_plugin/core/lists/step_pairs.h"
 
 namespace drape
 {

@@ -5,7 +5,7 @@
 #include <iterator>
 #include <vector>
 
-#include "contact_view.h"
+#include "bullet_plugin/core/lists/contact_view.h"
 #include "kernels/lib/geometry/rigid_motion.h"
 #include "kernels/lib/geometry/vec3.h"
 

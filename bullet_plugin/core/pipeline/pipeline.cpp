@@ -346,13 +346,13 @@ ClothFeature Pipeline::clothFeature(const Contact& contact) const
     return clothFeatureOf(m_implementation->m_scene.m_cloths, contact);
 }
 
-const MeshPool& Pipeline::cloths() const
+const Scene& Pipeline::scene() const
 {
-    return m_implementation->m_scene.m_cloths;
+    return m_implementation->m_scene;
 }
 
-const MeshPool& Pipeline::obstacles() const
+const StepPairs& Pipeline::pairs() const
 {
-    return m_implementation->m_scene.m_obstacles;
+    return m_implementation->m_pairs;
 }
 }  // namespace drape

@@ -16,9 +16,9 @@
 #include <vector>
 
 #include "bullet_plugin/core/ordering/contact_list.h"
-#include "bullet_plugin/core/solver/device/kept_step.h"
+#include "bullet_plugin/core/lists/contact_view.h"
+#include "bullet_plugin/core/lists/kept_step.h"
 #include "bullet_plugin/core/threads/thread_team.h"
-#include "contact_view.h"
 #include "drape/error.h"
 #include "drape/mesh_description.h"
 #include "drape/report.h"
@@ -26,9 +26,10 @@
 
 namespace drape
 {
-class MeshPool;
 class MeshProbe;
 class SolveStage;
+struct Scene;
+struct StepPairs;
 
 // A range of adjacent nodes of a cloth, and the memory to write them to: x y z per node.
 struct NodeStretch
@@ -171,9 +172,9 @@ public:
     SelfContactView viewSelf(const Contact& contact) const;
     // Resolves only the cloth's part of a contact of finish(), at a lower cost.
     ClothFeature clothFeature(const Contact& contact) const;
-    // Return the meshes, valid until one is added or removed. Contacts number features over them.
-    const MeshPool& cloths() const;
-    const MeshPool& obstacles() const;
+    // Return the meshes and the pairs of the last step, as viewContact() takes them.
+    const Scene& scene() const;
+    const StepPairs& pairs() const;
 
 private:
     struct Implementation;

@@ -1,5 +1,9 @@
 #include "contact_source.h"
 
+#include <algorithm>
+
+#include "bullet_plugin/core/lists/contact_view.h"
+
 namespace drape
 {
 namespace
@@ -45,7 +49,7 @@ SolverContact ContactSource::resolve(const SolverNodes& nodes, float friction, f
                                      const Contact& found) const
 {
     if (found.m_kind == kOwnKind) return m_own[found.m_obstacleFeature];
-    const ContactView view = m_pipeline->view(found);
+    const ContactView view = viewContact(*m_scene, *m_pairs, found);
     SolverContact contact;
     for (int k = 0; k < 3; ++k)
     {

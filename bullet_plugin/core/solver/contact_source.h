@@ -1,18 +1,22 @@
 // Resolves the contacts of the last detection for the solver, each on demand: most never act in a step.
 //
-// Input: the pipeline's list, which the pipeline owns and which is valid until its next submit; the motion and friction
-// of each obstacle. Cost: proportional to the contacts resolved.
+// Input: the list of a step, its meshes and its pairs, which the caller keeps unchanged while contacts are resolved;
+// the motion and friction of each obstacle. Cost: proportional to the contacts resolved.
 #pragma once
 
 #include <unordered_map>
 #include <vector>
 
-#include "bullet_plugin/core/pipeline/pipeline.h"
+#include "bullet_plugin/core/ordering/contact_list.h"
+#include "bullet_plugin/core/scene/mesh_id.h"
 #include "solver_contact.h"
 #include "solver_nodes.h"
 
 namespace drape
 {
+struct Scene;
+struct StepPairs;
+
 // The motion and the surface of an obstacle in the step.
 struct ObstacleSurface
 {
@@ -24,21 +28,22 @@ struct ObstacleSurface
 class ContactSource
 {
 public:
-    // Sets the pipeline whose contacts are resolved, and its list of them.
-    void setPipeline(const Pipeline& pipeline, ContactList list)
+    // Sets the meshes and pairs of the step, and its list of contacts.
+    void set(const Scene& scene, const StepPairs& pairs, ContactList list)
     {
-        m_pipeline = &pipeline;
+        m_scene = &scene;
+        m_pairs = &pairs;
         m_list = list;
         m_onDevice = DeviceContacts();
     }
-    // Sets the pipeline, and a list on its device that commands may read. No contact can be resolved.
-    void setOnDevice(const Pipeline& pipeline, DeviceContacts onDevice)
+    // Sets a list on a device that commands may read. No contact can be resolved.
+    void setOnDevice(const Scene& scene, const StepPairs& pairs, DeviceContacts onDevice)
     {
-        setPipeline(pipeline, ContactList());
+        set(scene, pairs, ContactList());
         m_onDevice = onDevice;
     }
-    // Returns the pipeline; null before setPipeline().
-    const Pipeline* pipeline() const { return m_pipeline; }
+    // Returns the meshes; null before set().
+    const Scene* scene() const { return m_scene; }
     // All contacts of the detection, those of addOwn() excepted.
     ContactList list() const { return m_list; }
     // The detection's list on the device; empty if list() is on the host.
@@ -60,7 +65,8 @@ public:
     SolverContact resolve(const SolverNodes& nodes, float friction, float hardness, const Contact& contact) const;
 
 private:
-    const Pipeline* m_pipeline = nullptr;
+    const Scene* m_scene = nullptr;
+    const StepPairs* m_pairs = nullptr;
     ContactList m_list;
     DeviceContacts m_onDevice;
     std::unordered_map<MeshId, ObstacleSurface> m_surfaces;

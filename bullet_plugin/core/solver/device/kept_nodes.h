@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "bullet_plugin/core/device/bound_kernel.h"
-#include "kept_step.h"
+#include "bullet_plugin/core/lists/kept_step.h"
 #include "kernels/solver/solver_bindings.h"
 
 namespace drape

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "bullet_plugin/core/scene/mesh_pool.h"
+#include "bullet_plugin/core/scene/scene.h"
 #include "bullet_plugin/core/solver/rigid_rows.h"
 #include "bullet_plugin/core/solver/step_solver.h"
 #include "word_places.h"
@@ -41,7 +41,7 @@ void PackedStep::packRegions(const ClothContacts& contacts, const ContactSource&
         surface.m_thickness = obstacle.m_thickness;
         surface.m_friction = contacts.m_friction * named.m_friction;
         surface.m_moves = named.m_moves ? 1 : 0;
-        surface.m_obstacle = std::uint32_t(source.pipeline()->obstacles().existingSlot(obstacle.m_mesh));
+        surface.m_obstacle = std::uint32_t(source.scene()->m_obstacles.existingSlot(obstacle.m_mesh));
         m_surfaces.push_back(surface);
     }
     const auto first = m_surfaces.begin() + std::ptrdiff_t(cloth.m_surfaces.m_first);
@@ -217,7 +217,7 @@ void PackedStep::describeLaunches()
 void PackedStep::pack(const std::vector<SolverCloth>& cloths, const ContactSource& source, SolveStage& stage)
 {
     m_cloths = cloths;
-    const MeshPool* const meshes = source.pipeline() ? &source.pipeline()->cloths() : nullptr;
+    const MeshPool* const meshes = source.scene() ? &source.scene()->m_cloths : nullptr;
     m_topology.pack(cloths, meshes);
     m_step.m_topology = m_topology.words().data();
     m_step.m_topologyWords = m_topology.words().size();
@@ -227,8 +227,8 @@ void PackedStep::pack(const std::vector<SolverCloth>& cloths, const ContactSourc
     m_surfaces.clear();
     m_regions.clear();
     m_obstacles.clear();
-    for (std::size_t slot = 0; source.pipeline() && slot < source.pipeline()->obstacles().meshCount(); ++slot)
-        m_obstacles.push_back(source.pipeline()->obstacles().begin(slot));
+    for (std::size_t slot = 0; source.scene() && slot < source.scene()->m_obstacles.meshCount(); ++slot)
+        m_obstacles.push_back(source.scene()->m_obstacles.begin(slot));
     for (std::size_t i = 0; i < m_cloths.size(); ++i)
         packCloth(i, source, stage);
     m_rigid.pack(m_cloths, m_clothRecords, m_topology.places());

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
-#include "bullet_plugin/core/backends/step_pairs.h"
 #include "bullet_plugin/core/scene/scene.h"
 #include "kernels/lib/geometry/segment.h"
 #include "kernels/lib/geometry/vec3.h"
+#include "step_pairs.h"
 
 namespace drape
 {

@@ -1,4 +1,4 @@
-// The step of a cloth whose nodes stay on a device (kept_nodes.h).
+// The step of a cloth whose nodes stay on a device (solver/device/kept_nodes.h).
 #pragma once
 
 #include <cstdint>
