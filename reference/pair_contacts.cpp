@@ -2,6 +2,7 @@
 
 #include "bullet_plugin/core/ordering/canonical_order.h"
 #include "kernels/lib/queries/triangle_triangle.h"
+#include "reference/pair_tests.h"
 
 namespace drape
 {

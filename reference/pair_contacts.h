@@ -10,7 +10,8 @@
 #include <vector>
 
 #include "bullet_plugin/core/scene/mesh_pool.h"
-#include "kernels/lib/narrow_phase/pair_contact.h"
+#include "kernels/lib/geometry/rigid_motion.h"
+#include "kernels/lib/step_data/step_views.h"
 
 namespace drape
 {

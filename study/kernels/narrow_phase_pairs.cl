@@ -3,7 +3,7 @@
 #include "../../kernels/lib/step_data/arena_views.h"
 #include "../../kernels/lib/work_items/item_runs.h"
 #include "../../kernels/lib/narrow_phase/list_contacts.h"
-#include "../../kernels/lib/narrow_phase/pair_contact.h"
+#include "../../reference/pair_tests.h"
 #include "narrow_phase_pairs_bindings.h"
 
 // A work-item goes through its part of the candidates, runs their feature tests and lists the contacts.

@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-#include "kernels/lib/narrow_phase/pair_contact.h"
+#include "reference/pair_tests.h"
 #include "tests/support/cases.h"
 #include "tests/support/side.h"
 
