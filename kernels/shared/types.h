@@ -5,7 +5,6 @@
 #ifdef __OPENCL_VERSION__
 #define DRAPE_UINT uint
 #define DRAPE_ULONG ulong
-#define DRAPE_INT int
 #define DRAPE_GLOBAL __global
 // On a CPU the functions of lib/any_width exist for two widths, as overloads. Its compilers derive from Clang, which
 // has them in C.
@@ -27,7 +26,6 @@
 #include <cstring>
 #define DRAPE_UINT std::uint32_t
 #define DRAPE_ULONG std::uint64_t
-#define DRAPE_INT std::int32_t
 #define DRAPE_GLOBAL
 // Gives each instruction set of the host's kernels its own functions: linkers merge inline ones.
 #ifdef DRAPE_CPU_KERNELS

@@ -72,34 +72,6 @@ DRAPE_FUNCTION void cornersSeen(Vec3* p, const DRAPE_GLOBAL ObstacleMotion* moti
     }
 }
 
-// Returns whether a volume, grown by the radius, can come near the obstacle. It must not be empty, and must meet the
-// box of the obstacle's positions if the obstacle moves.
-DRAPE_FUNCTION int mayComeNear(const Dop* dop, float radius, const DRAPE_GLOBAL ObstacleMotion* motion)
-{
-    int near = dop->m_low[0] <= dop->m_high[0];
-    for (int axis = 0; axis < 3 && motion; ++axis)
-    {
-        near &=
-            (dop->m_low[axis] - radius <= motion->m_high[axis]) & (dop->m_high[axis] + radius >= motion->m_low[axis]);
-    }
-    return near;
-}
-
-// Computes the volume to search for contacts of a cloth triangle over the step, relative to the obstacle; see
-// cornersVolume. mode: DRAPE_DISCRETE …. The volume includes the radius. Returns mayComeNear().
-DRAPE_FUNCTION int volumeSeen(Dop* dop, const DRAPE_GLOBAL ObstacleMotion* motion,
-                              const DRAPE_GLOBAL Triangle* triangle, const DRAPE_GLOBAL float* start,
-                              const DRAPE_GLOBAL float* end, float radius, DRAPE_UINT mode)
-{
-    Vec3 p[6];
-    cornersSeen(p, motion, triangle, start, end);
-    const int swept = isSwept(p, radius, mode);
-    for (int k = 0; k < 3 && !swept; ++k)
-        p[k] = p[3 + k];
-    cornersVolume(dop, p, swept, radius);
-    return mayComeNear(dop, 0.0f, motion);
-}
-
 // Returns the slot of a joined vertex or edge, from the slots' firsts (members of ObstaclePlace). Slots may be empty.
 // kind: the kind of the index.
 #define DRAPE_OF_VERTEX 0
