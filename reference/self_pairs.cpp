@@ -52,8 +52,8 @@ SelfFinder::SelfFinder(const SelfStep& step, const std::vector<Dop>& volumes, Se
       m_view(step.m_view),
       m_volumes(volumes),
       m_limits(limits),
-      m_firstSlot(firstSelfFeature(step.m_view.m_cloth.m_nodeCount, step.m_view.m_cloth.m_triangleCount,
-                                   std::uint32_t(step.m_cloths.edges().size())))
+      m_firstSlot(featureCountOf(step.m_view.m_cloth.m_nodeCount, step.m_view.m_cloth.m_triangleCount,
+                                 std::uint32_t(step.m_cloths.edges().size())))
 {
 }
 

@@ -26,7 +26,7 @@ typedef struct SelfFeatureValues
 {
     ClothLayout m_cloth;
     DRAPE_UINT m_testCapacity;
-    DRAPE_UINT m_firstFeature;  // firstSelfFeature()
+    DRAPE_UINT m_firstFeature;  // see featureCountOf()
     DRAPE_UINT m_mode;
     float m_reachScale;
     DRAPE_UINT m_contactCapacity;

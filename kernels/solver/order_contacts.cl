@@ -4,8 +4,9 @@
 // The contacts of a feature stay adjacent and in their order. Where a feature's contacts are in their bucket depends on
 // the order of work-items, and no result depends on it.
 #define DRAPE_NODE_SPACE __global
-#include "../lib/solver/closing_sweeps.h"
 #include "../lib/geometry/vec3.h"
+#include "../lib/solver/acting_contact.h"
+#include "../lib/solver/closing_sweeps.h"
 #include "solver_bindings.h"
 
 // Maximum contacts of a feature, see DRAPE_ROUND_TAG().
@@ -134,8 +135,7 @@ __kernel void prepareContacts(DRAPE_ORDER_CONTACTS)
         contact.m_level = cloth->m_mostThickness + vec3Dot(contact.m_normal, apart) + cloth->m_margin;
         contact.m_weights[0] = found->m_weights[1];
         contact.m_weights[1] = found->m_weights[2];
-        const int turns = found->m_kind == DRAPE_FACE_VERTEX && !(found->m_time < 1.0f);
-        contact.m_flags = (turns ? DRAPE_CONTACT_TURNS : 0u) | count << 8;
+        contact.m_flags = (contactTurns(found) ? DRAPE_CONTACT_TURNS : 0u) | count << 8;
         contact.m_pushing = 0;
         contact.m_rank = sorted[i].m_rank;
         if (found->m_time < 1.0f) progress[cloths[feature.m_bucket]].m_meets = 1;

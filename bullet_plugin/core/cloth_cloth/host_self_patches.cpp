@@ -116,7 +116,7 @@ void HostSelfPatches::findContacts(const SelfStep& step, SelfStepLimits limits, 
     if (m_counters.m_selfTests > limits.m_candidates) return;
     const ClothView& cloth = step.m_view.m_cloth;
     const std::uint32_t firstFeature =
-        firstSelfFeature(cloth.m_nodeCount, cloth.m_triangleCount, std::uint32_t(step.m_cloths.edges().size()));
+        featureCountOf(cloth.m_nodeCount, cloth.m_triangleCount, std::uint32_t(step.m_cloths.edges().size()));
     const SelfInput input = {m_tests.data(), m_counters.m_selfTests, step.m_view, firstFeature};
     const CpuSelfKernels& kernels = *m_kernels->m_self;
     m_retries += m_contacts.find(kernels.m_findContacts, kernels.m_findSwept, &StepCounters::m_selfSwept, input,

@@ -146,7 +146,7 @@ void SelfContactStage::enqueueContacts(Device& device, const Input& input, Unsor
     const ClothLayout& cloths = input.m_cloths.m_layout;
     const SelfFeatureValues values = {cloths,
                                       cl_uint(m_tests.capacity()),
-                                      firstSelfFeature(cloths.m_nodeCount, cloths.m_triangleCount, cloths.m_edgeCount),
+                                      featureCountOf(cloths.m_nodeCount, cloths.m_triangleCount, cloths.m_edgeCount),
                                       input.m_mode,
                                       input.m_reachScale,
                                       cl_uint(contacts.capacity()),

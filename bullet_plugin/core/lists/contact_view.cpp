@@ -5,6 +5,7 @@
 #include "bullet_plugin/core/scene/scene.h"
 #include "kernels/lib/geometry/segment.h"
 #include "kernels/lib/geometry/vec3.h"
+#include "kernels/lib/ordering/feature_index.h"
 #include "step_pairs.h"
 
 namespace drape
@@ -64,20 +65,15 @@ std::size_t obstacleSlot(const MeshPool& obstacles, const Contact& contact)
 
 ClothFeature clothFeatureOf(const MeshPool& cloths, const Contact& contact)
 {
-    const std::uint32_t index = contact.m_clothFeature;
-    if (contact.m_kind == DRAPE_NODE_FACE)
-    {
-        const PooledMesh& cloth = cloths.mesh(cloths.slotOfVertex(index));
-        return {cloth.m_id, std::size_t(index - cloth.m_firstVertex)};
-    }
-    if (contact.m_kind == DRAPE_FACE_VERTEX)
-    {
-        const PooledMesh& cloth = cloths.mesh(cloths.triangles()[index].m_mesh);
-        return {cloth.m_id, cloth.m_topology.m_vertexCount + (index - cloth.m_firstTriangle)};
-    }
-    const PooledMesh& cloth = cloths.mesh(cloths.slotOfEdge(index));
-    const Topology& topology = cloth.m_topology;
-    return {cloth.m_id, topology.m_vertexCount + topology.m_triangles.size() + (index - cloth.m_firstEdge)};
+    const std::uint32_t kind = contact.m_kind, index = contact.m_clothFeature;
+    const PooledMesh& cloth = cloths.mesh(kind == DRAPE_NODE_FACE     ? cloths.slotOfVertex(index)
+                                          : kind == DRAPE_FACE_VERTEX ? cloths.triangles()[index].m_mesh
+                                                                      : cloths.slotOfEdge(index));
+    const std::uint32_t first = kind == DRAPE_NODE_FACE     ? cloth.m_firstVertex
+                                : kind == DRAPE_FACE_VERTEX ? cloth.m_firstTriangle
+                                                            : cloth.m_firstEdge;
+    return {cloth.m_id, featureIndexOf(kind, index - first, std::uint32_t(cloth.m_topology.m_vertexCount),
+                                       std::uint32_t(cloth.m_topology.m_triangles.size()))};
 }
 
 Vec3 clothPoint(const MeshPool& cloths, const float* positions, const Contact& contact)

@@ -51,7 +51,7 @@ struct SelfContactView
 struct ClothFeature
 {
     MeshId m_cloth;
-    std::size_t m_index;  // among the cloth's nodes, then its triangles, then its edges (FeatureOrder::features())
+    std::size_t m_index;  // see featureIndexOf(); in the cloth
 };
 
 // Resolve a contact of the step with these pairs; the joined scene must be unchanged since.

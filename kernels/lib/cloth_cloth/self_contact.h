@@ -45,12 +45,6 @@ DRAPE_FUNCTION SelfView selfView(ClothView cloth, const DRAPE_GLOBAL float* rest
     return view;
 }
 
-// Returns the first feature index of self contacts. They follow the indices of contacts with obstacles.
-DRAPE_FUNCTION DRAPE_UINT firstSelfFeature(DRAPE_UINT nodes, DRAPE_UINT triangles, DRAPE_UINT edges)
-{
-    return nodes + triangles + edges;
-}
-
 #include "../any_width/one.h"
 #include "../any_width/self_pair.h"
 #include "../any_width/end.h"
@@ -170,7 +164,7 @@ DRAPE_FUNCTION int selfEdgeEdge(const SelfView* view, DRAPE_UINT first, DRAPE_UI
     return finishContact(found, end[2], contact);
 }
 
-// Sets the features of a self test's contact. firstFeature: firstSelfFeature().
+// Sets the features of a self test's contact. firstFeature: see featureCountOf().
 DRAPE_FUNCTION void nameSelfFeatures(Contact* contact, const ClothView* cloth, FeatureTest test,
                                      DRAPE_UINT firstFeature)
 {
@@ -178,7 +172,8 @@ DRAPE_FUNCTION void nameSelfFeatures(Contact* contact, const ClothView* cloth, F
     contact->m_kind = edges ? DRAPE_SELF_EDGE_EDGE : DRAPE_SELF_NODE_FACE;
     contact->m_clothFeature = test.m_cloth;
     contact->m_obstacleFeature = test.m_lane;
-    contact->m_featureIndex = firstFeature + test.m_cloth + (edges ? cloth->m_nodeCount + cloth->m_triangleCount : 0u);
+    contact->m_featureIndex = firstFeature + featureIndexOf(edges ? DRAPE_EDGE_EDGE : DRAPE_NODE_FACE, test.m_cloth,
+                                                            cloth->m_nodeCount, cloth->m_triangleCount);
 }
 
 // Runs a self test. Returns DRAPE_NO_CONTACT, ….

@@ -41,7 +41,7 @@ typedef struct SelfInput
     const DRAPE_GLOBAL FeatureTest* m_tests;
     DRAPE_UINT m_count;
     SelfView m_view;
-    DRAPE_UINT m_firstFeature;  // firstSelfFeature()
+    DRAPE_UINT m_firstFeature;  // see featureCountOf()
 } SelfInput;
 
 // Returns the positions at which volumes over the step begin: those of the end in a discrete step.

@@ -9,6 +9,7 @@
 #include "face_vertex_contact.h"
 #include "node_face_contact.h"
 #include "../geometry/segment.h"
+#include "../ordering/feature_index.h"
 #include "../step_data/cloth_reads.h"
 
 DRAPE_NAMESPACE_BEGIN
@@ -31,8 +32,7 @@ DRAPE_FUNCTION void nameFeatures(Contact* contact, const ClothView* view, DRAPE_
     contact->m_kind = kind;
     contact->m_clothFeature = cloth;
     contact->m_obstacleFeature = obstacle;
-    contact->m_featureIndex = cloth + (kind == DRAPE_NODE_FACE ? 0u : view->m_nodeCount) +
-                              (kind == DRAPE_EDGE_EDGE ? view->m_triangleCount : 0u);
+    contact->m_featureIndex = featureIndexOf(kind, cloth, view->m_nodeCount, view->m_triangleCount);
 }
 
 // Tests node i of the cloth triangle against the obstacle's triangle with corners a, b, c.

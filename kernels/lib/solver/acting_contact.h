@@ -43,6 +43,13 @@ typedef struct ContactSettings
     float m_perSecond;  // 1/s, steps per second
 } ContactSettings;
 
+// Returns whether a contact turns along with its face (renewPlane()): one of a face and a vertex that did not meet in
+// the step.
+DRAPE_FUNCTION int contactTurns(const DRAPE_GLOBAL Contact* contact)
+{
+    return contact->m_kind == DRAPE_FACE_VERTEX && !(contact->m_time < 1.0f);
+}
+
 // Gaps have the thickness subtracted: 0 is the resting distance, negative is too close.
 typedef struct ContactGaps
 {

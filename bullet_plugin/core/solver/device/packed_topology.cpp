@@ -5,6 +5,7 @@
 
 #include "bullet_plugin/core/scene/mesh_pool.h"
 #include "bullet_plugin/core/solver/host/substeps.h"
+#include "kernels/lib/ordering/feature_index.h"
 #include "word_places.h"
 
 namespace drape
@@ -173,12 +174,20 @@ void PackedTopology::packFeatures(const ClothContacts& contacts, const MeshPool&
         if (feature.m_kind == kEdgeFeature) packed.m_bucket += group.m_faceBuckets;
         for (int k = 0; k < 3 && feature.m_nodes[k] >= 0; ++k)
             packed.m_nodes[k] = placeOf[std::size_t(feature.m_nodes[k])];
-        std::size_t place = first.m_vertex + i;
+        std::size_t index = first.m_vertex + i;
+        std::uint32_t kind = DRAPE_NODE_FACE;
         if (i >= order.firstEdge())
-            place = meshes.vertexCount() + meshes.triangles().size() + first.m_edge + (i - order.firstEdge());
+        {
+            index = first.m_edge + (i - order.firstEdge());
+            kind = DRAPE_EDGE_EDGE;
+        }
         else if (i >= order.firstTriangle())
-            place = meshes.vertexCount() + first.m_triangle + (i - order.firstTriangle());
-        m_features[place] = packed;
+        {
+            index = first.m_triangle + (i - order.firstTriangle());
+            kind = DRAPE_FACE_VERTEX;
+        }
+        m_features[featureIndexOf(kind, std::uint32_t(index), std::uint32_t(meshes.vertexCount()),
+                                  std::uint32_t(meshes.triangles().size()))] = packed;
     }
 }
 

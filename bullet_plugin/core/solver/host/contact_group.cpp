@@ -131,7 +131,7 @@ bool ContactGroup::turn(const SweptCloth& cloth, const Block& block, int lane, f
 void ContactGroup::renew(const SweptCloth& cloth, Row& row, Block& block, int lane)
 {
     ContactPlane plane;
-    if (!turns(block, lane) || !turn(cloth, block, lane, cloth.m_passed, row, plane)) return;
+    if (!contactTurns(&block.m_contacts[lane]) || !turn(cloth, block, lane, cloth.m_passed, row, plane)) return;
     block.m_normal[0][lane] = plane.m_normal.x;
     block.m_normal[1][lane] = plane.m_normal.y;
     block.m_normal[2][lane] = plane.m_normal.z;
@@ -278,7 +278,7 @@ bool ContactGroup::endsNear(const SweptCloth& cloth, const Block& block, int lan
     const auto isNear = [&](const ActingContact& acting)
     { return acting.m_distance - rowViolation(&acting.m_row, cloth.nodes().nodes(), 1) < least; };
     if (isNear(row.m_acting)) return true;
-    if (!turns(block, lane) || row.m_acting.m_stage == 0) return false;
+    if (!contactTurns(&block.m_contacts[lane]) || row.m_acting.m_stage == 0) return false;
     Row now = row;
     ContactPlane plane;
     return !turn(cloth, block, lane, 1, now, plane) || isNear(now.m_acting);

@@ -102,10 +102,6 @@ private:
     void addFeature(const SweptCloth& cloth, const FeatureContacts& feature);
     static void fillLane(const SweptCloth& cloth, Block& block, int lane, const Contact& contact);
     static Row makeRow(const SweptCloth& cloth, const Block& block, int lane);
-    static bool turns(const Block& block, int lane)
-    {
-        return block.m_contacts[lane].m_kind == DRAPE_FACE_VERTEX && !(block.m_contacts[lane].m_time < 1);
-    }
     static bool turn(const SweptCloth& cloth, const Block& block, int lane, float passed, Row& row,
                      ContactPlane& plane);
     static void renew(const SweptCloth& cloth, Row& row, Block& block, int lane);

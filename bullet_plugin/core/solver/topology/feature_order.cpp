@@ -1,6 +1,7 @@
 #include "feature_order.h"
 
 #include "kernels/lib/geometry/segment.h"
+#include "kernels/lib/ordering/feature_index.h"
 #include "revision.h"
 
 namespace drape
@@ -43,13 +44,15 @@ void FeatureOrder::colour(std::uint32_t kind, std::size_t nodeCount)
 void FeatureOrder::build(const ClothParts& parts, const Topology& topology)
 {
     m_partsRevision = 0;
+    const std::uint32_t nodes = std::uint32_t(topology.m_vertexCount);
+    const std::uint32_t triangles = std::uint32_t(topology.m_triangles.size());
+    m_firstTriangle = featureIndexOf(DRAPE_FACE_VERTEX, 0, nodes, triangles);
+    m_firstEdge = featureIndexOf(DRAPE_EDGE_EDGE, 0, nodes, triangles);
     m_features.clear();
     for (std::uint32_t node = 0; node < topology.m_vertexCount; ++node)
         m_features.push_back(featureOf(parts, &node, 1));
-    m_firstTriangle = m_features.size();
     for (const Triangle& triangle : topology.m_triangles)
         m_features.push_back(featureOf(parts, triangle.m_vertices, isSegment(&triangle) ? 2 : 3));
-    m_firstEdge = m_features.size();
     for (const Edge& edge : topology.m_edges)
         m_features.push_back(featureOf(parts, edge.m_vertices, 2));
     m_anyUncoloured = false;

@@ -30,7 +30,7 @@ public:
     // parts: of the topology's vertices.
     void build(const ClothParts& parts, const Topology& topology);
 
-    // All features: the vertices, then the topology's triangles, then its edges.
+    // All features, by featureIndexOf().
     const std::vector<OrderedFeature>& features() const { return m_features; }
     std::size_t firstTriangle() const { return m_firstTriangle; }
     std::size_t firstEdge() const { return m_firstEdge; }
