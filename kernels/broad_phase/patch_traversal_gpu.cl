@@ -1,6 +1,6 @@
 // Broad phase over patches on a GPU, in two launches. If one group did all of the work for a cloth triangle, its
 // steps would run one after the other with most of the machine idle. The traversal therefore only lists pairs of a
-// triangle and a patch that it may touch, and the groups of the second launch share them (patch_cull_pairs.cl). A
+// triangle and a patch that it may touch, and the groups of the second launch share them (patch_cull_pairs_gpu.cl). A
 // group traverses for one triangle where there are few, otherwise for a packet of neighbouring triangles.
 #include "../lib/broad_phase/patch_pairs.h"
 

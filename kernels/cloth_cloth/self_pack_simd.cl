@@ -1,5 +1,5 @@
-// The CPU version of self_pack.cl: a work-item packs a patch, a vector of its features at a time, and also writes the
-// features' boxes.
+// The CPU version of self_pack_gpu.cl: a work-item packs a patch, a vector of its features at a time, and also writes
+// the features' boxes.
 #include "../lib/broad_phase/cull_packet.h"
 #include "../lib/cloth_cloth/invalid_nodes.h"
 #include "../lib/cloth_cloth/self_cull.h"

@@ -1,5 +1,5 @@
-// Packs the obstacles' features for the culls (patch_cull.cl, patch_cull_pairs.cl), and the wide tree over their
-// patches, after an obstacle was added or moved.
+// Packs the obstacles' features for the culls (patch_cull_simd.cl, patch_cull_pairs_gpu.cl), and the wide tree over
+// their patches, after an obstacle was added or moved.
 #include "../lib/broad_phase/cone_reach.h"
 #include "../lib/broad_phase/feature_cull.h"
 #include "../lib/step_data/step_views.h"

@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <cctype>
-#include <set>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -16,27 +15,28 @@ namespace drape::test
 {
 namespace
 {
-// Files that one kind of device alone compiles; the stages load the others on both.
-const std::set<std::string> kGpuFiles = {"broad_phase/patch_cull_pairs", "broad_phase/patch_traversal_gpu",
-                                         "cloth_cloth/self_pack", "cloth_cloth/self_traversal_gpu",
-                                         "ordering/ordering_small"};
-const std::set<std::string> kCpuFiles = {"broad_phase/patch_cull", "cloth_cloth/self_contact_simd",
-                                         "cloth_cloth/self_cull", "cloth_cloth/self_pack_simd",
-                                         "narrow_phase/narrow_phase_simd"};
+bool endsWith(const std::string& text, const std::string& ending)
+{
+    return text.size() >= ending.size() && text.compare(text.size() - ending.size(), ending.size(), ending) == 0;
+}
+
+// Returns whether the other kind of device alone compiles the file; stages load files without an ending on both.
+bool isForOthers(const std::string& name, const Device& device)
+{
+    return device.isGpu() ? endsWith(name, "_simd") : endsWith(name, "_gpu") || endsWith(name, "_small");
+}
 
 // Returns the names in "kernels/<name>.cl" that the device compiles.
 std::vector<std::string> kernelFiles(const Device& device)
 {
     const std::string folder = "kernels/", ending = ".cl";
-    const std::set<std::string>& others = device.isGpu() ? kCpuFiles : kGpuFiles;
     std::vector<std::string> names;
     for (std::size_t i = 0; i < kEmbeddedFileCount; ++i)
     {
         const std::string path = kEmbeddedFiles[i].m_path;
-        if (path.compare(0, folder.size(), folder) != 0 || path.size() < ending.size()) continue;
-        if (path.compare(path.size() - ending.size(), ending.size(), ending) != 0) continue;
+        if (path.compare(0, folder.size(), folder) != 0 || !endsWith(path, ending)) continue;
         const std::string name = path.substr(folder.size(), path.size() - folder.size() - ending.size());
-        if (others.count(name) == 0) names.push_back(name);
+        if (!isForOthers(name, device)) names.push_back(name);
     }
     return names;
 }

@@ -18,9 +18,9 @@ constexpr std::size_t kFirstContacts = 1 << 13;
 // collide with themselves.
 std::vector<ProgramSet::Names> filesTogether()
 {
-    return {{"ordering/ordering", "scene/place_obstacles", "broad_phase/patch_cull", "scene/patch_pack",
+    return {{"ordering/ordering", "scene/place_obstacles", "broad_phase/patch_cull_simd", "scene/patch_pack",
              "narrow_phase/narrow_phase", "narrow_phase/narrow_phase_simd"},
-            {"cloth_cloth/self_cull", "cloth_cloth/self_pack_simd", "cloth_cloth/self_contact",
+            {"cloth_cloth/self_cull_simd", "cloth_cloth/self_pack_simd", "cloth_cloth/self_contact",
              "cloth_cloth/self_contact_simd"}};
 }
 // Returns whether cloths may be solved on the device.

@@ -23,10 +23,10 @@ void PatchCullStage::create(Device& device, const ProgramLoader& load)
     if (device.isGpu())
     {
         m_walk.create(device, load("broad_phase/patch_traversal_gpu"));
-        m_cullPairs.create(device, load("broad_phase/patch_cull_pairs"));
+        m_cullPairs.create(device, load("broad_phase/patch_cull_pairs_gpu"));
     }
     else
-        m_cull.create(device, load("broad_phase/patch_cull"));
+        m_cull.create(device, load("broad_phase/patch_cull_simd"));
     reserveFirstPairs(device);
 }
 

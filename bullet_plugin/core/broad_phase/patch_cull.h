@@ -1,9 +1,9 @@
 // Broad phase over patches: lists the feature tests of cloth triangles and obstacle features that may give a contact.
 //
 // Job: traverse the wide tree over the obstacles' patches with packets of cloth triangles, and drop pairs that are
-// certainly apart. A CPU takes a block of features at a time (kernels/broad_phase/patch_cull.cl), a GPU parts of
-// several (patch_traversal_gpu.cl and patch_cull_pairs.cl). Output: feature tests in no particular order, each at most
-// once. Guarantee: no test that gives a contact is dropped. Cost: one launch per step, two on a GPU.
+// certainly apart. A CPU takes a block of features at a time (kernels/broad_phase/patch_cull_simd.cl), a GPU parts of
+// several (patch_traversal_gpu.cl and patch_cull_pairs_gpu.cl). Output: feature tests in no particular order, each at
+// most once. Guarantee: no test that gives a contact is dropped. Cost: one launch per step, two on a GPU.
 #pragma once
 
 #include "bullet_plugin/core/device/bound_kernel.h"

@@ -23,7 +23,7 @@ void SelfContactStage::create(Device& device, const ProgramLoader& load)
     if (device.isGpu())
     {
         const cl::Program traversal = load("cloth_cloth/self_traversal_gpu");
-        m_pack.create(device, load("cloth_cloth/self_pack"));
+        m_pack.create(device, load("cloth_cloth/self_pack_gpu"));
         m_walk.create(device, traversal);
         m_cullPairs.create(device, traversal);
         m_feature.create(device, contact);
@@ -31,7 +31,7 @@ void SelfContactStage::create(Device& device, const ProgramLoader& load)
     else
     {
         m_pack.create(device, load("cloth_cloth/self_pack_simd"));
-        m_cull.create(device, load("cloth_cloth/self_cull"));
+        m_cull.create(device, load("cloth_cloth/self_cull_simd"));
         m_feature.create(device, load("cloth_cloth/self_contact_simd"));
     }
     m_pairs.reserve(device, device.isGpu() ? kFirstPairs : 1);

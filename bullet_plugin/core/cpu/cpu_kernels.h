@@ -2,8 +2,8 @@
 // sets. The machine's best set is used. Needs no OpenCL.
 //
 // Threads may run different items of a launch at once; results do not depend on it, except for the order of lists. The
-// kernels document their arguments: kernels/scene/patch_pack.cl, patch_cull.cl, narrow_phase_simd.cl and
-// narrow_phase.cl; for cloths with themselves self_pack_simd.cl, self_cull.cl, self_contact_simd.cl and
+// kernels document their arguments: kernels/scene/patch_pack.cl, patch_cull_simd.cl, narrow_phase_simd.cl and
+// narrow_phase.cl; for cloths with themselves self_pack_simd.cl, self_cull_simd.cl, self_contact_simd.cl and
 // self_contact.cl. All arguments of one call have DRAPE_PATCH_WIDTH lanes. The same bits with every instruction set.
 #pragma once
 

@@ -16,7 +16,7 @@ namespace
 {
 #include "kernels/narrow_phase/narrow_phase.cl"
 #include "kernels/narrow_phase/narrow_phase_simd.cl"
-#include "kernels/broad_phase/patch_cull.cl"
+#include "kernels/broad_phase/patch_cull_simd.cl"
 #include "kernels/scene/patch_pack.cl"
 
 void packFaces(const uint* owners, uint first, uint last, const ObstacleView& obstacle, float* faces)

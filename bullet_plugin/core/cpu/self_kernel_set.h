@@ -14,7 +14,7 @@ namespace
 {
 #include "kernels/cloth_cloth/self_contact.cl"
 #include "kernels/cloth_cloth/self_contact_simd.cl"
-#include "kernels/cloth_cloth/self_cull.cl"
+#include "kernels/cloth_cloth/self_cull_simd.cl"
 #include "kernels/cloth_cloth/self_pack_simd.cl"
 
 void pack(uint item, const ClothView& cloth, const SelfRadii& radii, const SelfPatches& patches, StepCounters* counters)

@@ -1,5 +1,5 @@
-// Pairs of features of one cloth that a broad phase lists (kernels/cloth_cloth/self_cull.cl, self_traversal_gpu.cl).
-// For kernels only.
+// Pairs of features of one cloth that a broad phase lists (kernels/cloth_cloth/self_cull_simd.cl,
+// self_traversal_gpu.cl). For kernels only.
 #ifndef DRAPE_LIB_SELF_PAIRS_H
 #define DRAPE_LIB_SELF_PAIRS_H
 
