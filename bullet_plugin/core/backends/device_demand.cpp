@@ -4,6 +4,7 @@
 
 #include "device_backend.h"
 #include "step_limits.h"
+#include "write_counts.h"
 
 namespace drape
 {

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "bullet_plugin/core/stopwatch.h"
+#include "write_counts.h"
 
 namespace drape
 {

@@ -5,6 +5,7 @@
 
 #include "bullet_plugin/core/backends/device_backend.h"
 #include "bullet_plugin/core/backends/host_backend.h"
+#include "bullet_plugin/core/backends/write_counts.h"
 #include "cloths_over_budget.h"
 
 namespace drape
