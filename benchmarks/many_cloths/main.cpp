@@ -112,7 +112,7 @@ Row measure(const ManyOptions& options, const DropScene& scene, const Method& me
     }
     std::vector<double> stepMs;
     std::vector<WholeStepParts> parts;
-    std::size_t onDevice = 0, away = 0;
+    std::size_t onDevice = 0, kept = 0;
     std::uint64_t hash = kEmptyHash;
     const std::clock_t cpu = std::clock();
     for (int step = 0; step < options.m_steps; ++step)
@@ -120,8 +120,8 @@ Row measure(const ManyOptions& options, const DropScene& scene, const Method& me
         stepMs.push_back(world.step(scene.m_dt));
         const StepStatistics statistics = plugin.statistics();
         parts.push_back(partsOf(statistics, stepMs.back(), world.world().collisionMs(), statistics.callsMs()));
-        onDevice = std::max(onDevice, statistics.m_clothsOnDevice);
-        away += statistics.m_clothsAway;
+        onDevice = std::max(onDevice, statistics.m_clothsSolvedOnDevice);
+        kept += statistics.m_clothsKept;
         if (method.m_keeps && (step + 1) % options.m_fetchEvery == 0)
             stepMs.back() += fetchAll(plugin, world, options.m_cloths);
     }
@@ -137,7 +137,7 @@ Row measure(const ManyOptions& options, const DropScene& scene, const Method& me
     row["nodes"] = options.m_nodes * options.m_nodes;
     row["device"] = plugin.device().m_device.m_name;
     row["cloths_on_device"] = onDevice;
-    row["away_share"] = double(away) / options.m_cloths / options.m_steps;
+    row["kept_share"] = double(kept) / options.m_cloths / options.m_steps;
     row["median_ms"] = median(stepMs);
     row["mean_ms"] = mean(stepMs);
     row["cpu_ms"] = cpuMs;

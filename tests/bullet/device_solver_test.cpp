@@ -57,7 +57,7 @@ Trajectory run(const Scene& scene, Settings settings, SolverPlace place)
         obstacle.setWorldTransform(pose);
         if (scene.m_beforeStep) scene.m_beforeStep(cloths, step);
         world.step();
-        trajectory.m_onDevice += plugin.statistics().m_clothsOnDevice;
+        trajectory.m_onDevice += plugin.statistics().m_clothsSolvedOnDevice;
         for (const btSoftBody* cloth : cloths)
             trajectory.m_hash = hashOf(*cloth, trajectory.m_hash);
     }

@@ -45,7 +45,7 @@ struct SphereWorld
 struct Outcome
 {
     std::uint64_t m_hash = kHashStart;
-    int m_away = 0;            // steps that left the nodes on the device
+    int m_kept = 0;            // steps that left the nodes on the device
     std::string m_reason;      // why the body could not be kept
     std::size_t m_status = 0;  // bits of all steps
 };
@@ -73,7 +73,7 @@ Outcome run(const Scene& scene, const Settings& settings, bool keeps)
     {
         if (scene.m_beforeStep) scene.m_beforeStep(*all.m_sphere, cloth, step);
         all.m_world->step();
-        result.m_away += plugin.statistics().m_clothsAway > 0;
+        result.m_kept += plugin.statistics().m_clothsKept > 0;
         result.m_status |= plugin.statistics().m_status;
         if (step % 10 != 0) continue;
         if (keeps) plugin.fetch(cloth);
@@ -88,15 +88,15 @@ class KeptBodyTest : public BackendTest
 {
 protected:
     Settings settingsFor(bool keeps) const { return keeps ? GetParam().m_settings : hostSettings(); }
-    // Runs the scene with and without keeping the cloth. Returns the steps in which it was away.
+    // Runs the scene with and without keeping the cloth. Returns the steps in which it stayed on the device.
     int expectSame(const Scene& scene) const
     {
-        const Outcome home = run(scene, settingsFor(false), false), away = run(scene, settingsFor(true), true);
-        EXPECT_EQ(away.m_reason, "");
-        EXPECT_EQ(home.m_hash, away.m_hash);
-        EXPECT_EQ(home.m_status, away.m_status);
-        EXPECT_EQ(home.m_away, 0);
-        return away.m_away;
+        const Outcome plain = run(scene, settingsFor(false), false), kept = run(scene, settingsFor(true), true);
+        EXPECT_EQ(kept.m_reason, "");
+        EXPECT_EQ(plain.m_hash, kept.m_hash);
+        EXPECT_EQ(plain.m_status, kept.m_status);
+        EXPECT_EQ(plain.m_kept, 0);
+        return kept.m_kept;
     }
 };
 
@@ -180,8 +180,8 @@ TEST_P(KeptBodyTest, AnAppMovesPinsAsAtHome)
     EXPECT_GT(expectSame(scene), kSteps / 4);
 }
 
-// Bullet's own algorithm finds the box; the nodes come home while it is near.
-TEST_P(KeptBodyTest, ABoxBringsClothHome)
+// Bullet's own algorithm finds the box; the nodes are brought to the host while it is near.
+TEST_P(KeptBodyTest, ABoxBringsClothToTheHost)
 {
     btBoxShape box(btVector3(btScalar(0.1), btScalar(0.1), btScalar(0.1)));
     Scene scene = {clothOf(17), nullptr, nullptr};
@@ -311,7 +311,7 @@ TEST_P(KeptBodyTest, RemovedBodiesAreForgotten)
 }
 
 // The box is far away when the step begins. The cloth gets its nodes when Bullet's own algorithm reads them.
-TEST_P(KeptBodyTest, ABoxThatAppearsInAStepBringsClothHome)
+TEST_P(KeptBodyTest, ABoxThatAppearsInAStepBringsClothToTheHost)
 {
     btBoxShape box(btVector3(btScalar(0.1), btScalar(0.1), btScalar(0.1)));
     btRigidBody* body = nullptr;
@@ -336,7 +336,7 @@ TEST_P(KeptBodyTest, DragThatBeginsActsAsAtHome)
 }
 
 // Bullet solves the cloth from then on. The flag has no contacts.
-TEST_P(KeptBodyTest, ALinkToAnotherBodyBringsClothHome)
+TEST_P(KeptBodyTest, ALinkToAnotherBodyBringsClothToTheHost)
 {
     for (const btScalar height : {btScalar(0.45), btScalar(5)})
     {
@@ -370,7 +370,7 @@ TEST_P(KeptBodyTest, PinsJumpAsAtHome)
     EXPECT_GT(expectSame(scene), kSteps / 4);
 }
 
-TEST_P(KeptBodyTest, ForcesOnClothThatIsAwayDoNotCount)
+TEST_P(KeptBodyTest, ForcesOnClothOnTheDeviceDoNotCount)
 {
     Scene scene = {clothOf(17), nullptr, nullptr};
     scene.m_add = [](DropWorld&, btSoftBody& cloth) { cloth.setMass(0, 0); };

@@ -52,7 +52,7 @@ struct BodyContacts
     bool m_heldTogether = false;         // since the last detection, see stretch.h
     bool m_obstacleJumps = false;        // an obstacle moves farther in the step than its size, or turns far
     bool m_hasDeformedPair = false;      // an obstacle's vertices move in the step
-    bool m_isAway = false;               // its nodes are on the device (kept_bodies.h)
+    bool m_isOnDevice = false;           // see kept_bodies.h
     bool m_meetsSurface = false;         // the host must solve it: a path meets a surface, or the like
     bool m_isOffPath = false;            // the solver left its path so far that it may have passed a surface
     std::vector<TangledPair> m_tangled;  // the body's pairs that are pushed apart
@@ -76,7 +76,7 @@ struct BodyContacts
         m_contacts.m_perSecond = float(body->m_sst.isdt);
         m_contacts.m_kept = float(1 - body->m_cfg.kDP);
         m_leftOut = m_heldTogether = m_obstacleJumps = m_hasDeformedPair = false;
-        m_isAway = m_meetsSurface = m_isOffPath = false;
+        m_isOnDevice = m_meetsSurface = m_isOffPath = false;
         m_tangled.clear();
         m_wasTangled = false;
         m_pushes.clear();

@@ -68,7 +68,7 @@ void CollisionStep::addBody(ClothMirror& cloth, btSoftBody* body)
     m_byCloth[cloth.id()] = m_byBody[body] = m_bodies.size() - 1;
     m_uploads.push_back(Upload{cloth.id(), m_bodies.size() - 1, nullptr});
     m_bodies.back().start(cloth.id(), body, cloth.parts(), cloth.order());
-    m_bodies.back().m_isAway = m_state.m_kept.stepOf(*body) != nullptr;
+    m_bodies.back().m_isOnDevice = m_state.m_kept.stepOf(*body) != nullptr;
 }
 
 void CollisionStep::clear()
@@ -101,7 +101,7 @@ CollisionStep::Pair CollisionStep::makePair(const PairNote& note, const ClothMir
     const ObstacleMirror& mirror = m_state.obstacleMirror(note);
     Pair pair = {cloth.id(), obstacle, note.m_thickness, nullptr, {&cloth, &mirror, note.m_motion, note.m_kinematic}};
     if (!mirror.before()) return pair;
-    bringHome(*bodyOf(cloth.id()));
+    bringToHost(*bodyOf(cloth.id()));
     const btScalar reach = note.m_thickness * (1 + btScalar(m_state.settings().m_activation));
     const DeformedPair& deformed = m_deformed.update(cloth, mirror, note.m_motion, note.m_kinematic, reach);
     const std::size_t body = m_byCloth.at(cloth.id());
@@ -118,11 +118,11 @@ CollisionStep::Pair CollisionStep::makePair(const PairNote& note, const ClothMir
 void CollisionStep::addPair(const PairNote& note)
 {
     ClothMirror& cloth = m_state.clothMirror(note);
-    const auto bringHome = [&]
+    const auto bringToHost = [&]
     {
-        if (m_state.m_kept.stepOf(*note.m_cloth)) m_bringHome(*note.m_cloth);
+        if (m_state.m_kept.stepOf(*note.m_cloth)) m_bringToHost(*note.m_cloth);
     };
-    const MeshId clothId = bodyOf(cloth.id()) ? cloth.id() : cloth.refresh(m_state.pipeline(), bringHome);
+    const MeshId clothId = bodyOf(cloth.id()) ? cloth.id() : cloth.refresh(m_state.pipeline(), bringToHost);
     const MeshId obstacleId = m_state.obstacleMirror(note).refresh(m_state.pipeline(), note.m_kinematic, note.m_motion);
     if (clothId == kNoMesh || obstacleId == kNoMesh) return;
     if (!bodyOf(clothId))
@@ -162,7 +162,7 @@ void CollisionStep::uploadNodes(Detection detection)
     {
         const BodyContacts& body = m_bodies[upload.m_body];
         if (detection != Detection::First && !isDetected(body, detection)) continue;
-        if (body.m_isAway)
+        if (body.m_isOnDevice)
             m_state.pipeline().addKept(upload.m_mesh, *m_state.m_kept.stepOf(*body.m_body));
         else
         {
@@ -195,29 +195,29 @@ void CollisionStep::uploadNodes(Detection detection)
     m_state.pipeline().writeNodes(cloths, write);
 }
 
-// Records the body's paths again as the detection found them, at home: the solver may have replaced their ends by more
-// precise ones.
+// Records the body's paths again as the detection found them, on the host: the solver may have replaced their ends by
+// more precise ones.
 void CollisionStep::recordPaths(BodyContacts& body)
 {
-    bringHome(body);
+    bringToHost(body);
     for (std::size_t i = 0; i < body.nodes().count(); ++i)
         recordPath(body.m_body->m_nodes[static_cast<int>(i)], i, body.nodes());
 }
 
-void CollisionStep::bringHome(BodyContacts& body)
+void CollisionStep::bringToHost(BodyContacts& body)
 {
-    if (!body.m_isAway) return;
-    m_bringHome(*body.m_body);
-    body.m_isAway = false;
+    if (!body.m_isOnDevice) return;
+    m_bringToHost(*body.m_body);
+    body.m_isOnDevice = false;
 }
 
-void CollisionStep::begin(const std::vector<PairNote>& notes, BringHome bringHome)
+void CollisionStep::begin(const std::vector<PairNote>& notes, BringToHost bringToHost)
 {
     const auto neededHost = [](const BodyContacts& body) { return body.m_meetsSurface; };
     const auto count = std::count_if(m_bodies.begin(), m_bodies.end(), neededHost);
     m_neededHost = 2 * static_cast<std::size_t>(count) > m_bodies.size();
     clear();
-    m_bringHome = std::move(bringHome);
+    m_bringToHost = std::move(bringToHost);
     m_uploadMs = 0;
     m_state.m_found.clear();
     // Adding and removing meshes moves the memory that nodes are written to: mirrors first, nodes after.
@@ -239,7 +239,7 @@ void CollisionStep::submit(ContactPlace place)
     namePairs(Detection::First);
     if (!m_state.pipeline().mayStay()) place = ContactPlace::Host;
     for (BodyContacts& body : m_bodies)
-        if (place == ContactPlace::Host) bringHome(body);
+        if (place == ContactPlace::Host) bringToHost(body);
     submit(Detection::First, place);
     m_state.m_found.setOnDevice(m_state.pipeline(), m_state.pipeline().contactsOnDevice());
 }
@@ -335,7 +335,7 @@ float CollisionStep::allowanceOf(MeshId cloth)
 {
     const std::size_t index = m_byCloth.at(cloth);
     BodyContacts& body = m_bodies[index];
-    if (body.m_isAway) recordPaths(body);
+    if (body.m_isOnDevice) recordPaths(body);
     const Stretch stretch = stretchOf(*body.m_body, m_mirrors[index]->faces(), body.nodes());
     const bool isApart = stretch.m_start > kMostStretch;
     if (!body.m_heldTogether && (isApart || stretch.m_end > kMostStretch)) return 1;
@@ -479,8 +479,8 @@ std::vector<BodyContacts*> CollisionStep::checkOffPath()
         BodyContacts& body = m_bodies[i];
         ClothContacts& contacts = body.m_contacts;
         const bool mayHavePassed = contacts.m_mayHavePassed && !contacts.m_isFiltered;
-        body.m_isOffPath =
-            !body.m_isAway && (mayHavePassed || m_mirrors[i]->isWatched() || contacts.m_limit.anyOffPath(body.nodes()));
+        body.m_isOffPath = !body.m_isOnDevice &&
+                           (mayHavePassed || m_mirrors[i]->isWatched() || contacts.m_limit.anyOffPath(body.nodes()));
         m_mirrors[i]->watch(false);
         if (body.m_isOffPath) bodies.push_back(&body);
     }

@@ -24,9 +24,9 @@ class CollisionStep
 public:
     explicit CollisionStep(PluginState& state) : m_state(state), m_deformed(state), m_starts(state) {}
 
-    // bringHome: called for a body that is away (kept_bodies.h) if the step needs its nodes; it predicts them.
-    using BringHome = std::function<void(btSoftBody&)>;
-    void begin(const std::vector<PairNote>& notes, BringHome bringHome);
+    // bringToHost: called for a body on the device (kept_bodies.h) if the step needs its nodes; it predicts them.
+    using BringToHost = std::function<void(btSoftBody&)>;
+    void begin(const std::vector<PairNote>& notes, BringToHost bringToHost);
     // Returns whether there is anything to submit.
     bool hasPairs() const { return !m_pairs.empty(); }
     // Returns whether most of the bodies had to be solved on the host in the step before, so that they are likely to be
@@ -35,8 +35,8 @@ public:
     const std::vector<BodyContacts>& bodies() const { return m_bodies; }
     // Records the bodies' paths and enqueues the detection. place: where its contacts go, if possible.
     void submit(ContactPlace place);
-    // Brings the body home if it is away.
-    void bringHome(BodyContacts& body);
+    // Brings the body to the host if it is on the device.
+    void bringToHost(BodyContacts& body);
     // takeSolved: called after the wait if the contacts are on the device; marks bodies that commands enqueued behind
     // the detection have solved (ClothContacts::m_isSolved). Their contacts are not sorted. Null if there are none.
     using TakeSolved = std::function<void()>;
@@ -126,7 +126,7 @@ private:
     bool m_heldTogether = false;  // any body, since the last detection
     double m_uploadMs = 0;        // see uploadMs()
     bool m_neededHost = false;    // see neededHost()
-    BringHome m_bringHome;
+    BringToHost m_bringToHost;
     DeformedPairs m_deformed;
     PairStarts m_starts;
     std::vector<std::vector<int>> m_jumped;           // result of checkStarts(), by body

@@ -52,18 +52,19 @@ std::size_t countInvalid(const btSoftBody& body)
 }
 }  // namespace
 
-// Lists the nodes that jumped. A body that is away has none, but comes home if one of its pairs starts anew.
+// Lists the nodes that jumped. A body on the device has none, but is brought to the host if one of its pairs starts
+// anew.
 void CollisionStep::listJumped()
 {
     for (const Pair& pair : m_pairs)
     {
         BodyContacts& body = *bodyOf(pair.m_cloth);
-        if (body.m_isAway && m_starts.startsAnew(pair.m_start)) bringHome(body);
+        if (body.m_isOnDevice && m_starts.startsAnew(pair.m_start)) bringToHost(body);
     }
     for (std::size_t i = 0; i < m_bodies.size(); ++i)
     {
         m_jumped[i].clear();
-        if (!m_bodies[i].m_isAway) m_mirrors[i]->listJumped(m_state.threads(), m_jumped[i]);
+        if (!m_bodies[i].m_isOnDevice) m_mirrors[i]->listJumped(m_state.threads(), m_jumped[i]);
     }
 }
 
@@ -221,6 +222,6 @@ void CollisionStep::end()
         if (body.m_wasTangled) limitSpeeds(*body.m_body, body.m_leftOut);
     }
     for (std::size_t i = 0; i < m_mirrors.size(); ++i)
-        if (!m_bodies[i].m_isAway) m_mirrors[i]->rememberEnds(m_state.threads());
+        if (!m_bodies[i].m_isOnDevice) m_mirrors[i]->rememberEnds(m_state.threads());
 }
 }  // namespace drape

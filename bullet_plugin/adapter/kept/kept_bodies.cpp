@@ -207,7 +207,7 @@ const char* KeptBodies::keep(btSoftBody& body)
     return nullptr;
 }
 
-// Gives the body memory on the device. It is at home then.
+// Gives the body memory on the device. It is on the host then.
 void KeptBodies::makeRoom(const btSoftBody& body, Kept& kept)
 {
     kept = Kept();
@@ -225,7 +225,7 @@ void KeptBodies::freeRoom(const Kept& kept)
 void KeptBodies::takeNodes(const btSoftBody& body)
 {
     Kept* const kept = find(body);
-    if (kept) kept->m_isAway = kept->m_isReading = false;
+    if (kept) kept->m_isOnDevice = kept->m_isReading = false;
 }
 
 void KeptBodies::forgetRemoved(const btSoftBodySolver* solver, const btAlignedObjectArray<btSoftBody*>& bodies)
@@ -256,8 +256,8 @@ void KeptBodies::abandon() noexcept
     for (auto& entry : m_bodies)
     {
         Kept& kept = entry.second;
-        if (!kept.m_isAway || !solver || kept.m_revision != solver->revision()) continue;
-        guarded([&] { comeHome(*const_cast<btSoftBody*>(entry.first)); }, [](const CaughtException&) {});
+        if (!kept.m_isOnDevice || !solver || kept.m_revision != solver->revision()) continue;
+        guarded([&] { bringToHost(*const_cast<btSoftBody*>(entry.first)); }, [](const CaughtException&) {});
     }
     m_bodies.clear();
 }
@@ -266,7 +266,7 @@ void KeptBodies::beginFetch(const btSoftBody& body)
 {
     Kept* const kept = find(body);
     SolveStage* const solver = stage();
-    if (!kept || !kept->m_isAway || !solver) return;
+    if (!kept || !kept->m_isOnDevice || !solver) return;
     solver->kept().beginRead(kept->m_id);
     kept->m_isReading = true;
     kept->m_waitsBefore = m_state.pipeline().deviceWaits();
@@ -287,7 +287,7 @@ const KeptNode* KeptBodies::read(Kept& kept)
 bool KeptBodies::fetch(btSoftBody& body)
 {
     Kept* const kept = find(body);
-    if (!kept || !kept->m_isAway) return false;
+    if (!kept || !kept->m_isOnDevice) return false;
     const KeptNode* const nodes = read(*kept);
     if (!nodes) return false;
     for (int i = 0; i < countOf(body, kept->m_count); ++i)
@@ -306,7 +306,7 @@ bool KeptBodies::fetch(btSoftBody& body)
 bool KeptBodies::fetch(const btSoftBody& body, const NodeArrays& arrays)
 {
     Kept* const kept = find(body);
-    const KeptNode* const nodes = kept && kept->m_isAway ? read(*kept) : nullptr;
+    const KeptNode* const nodes = kept && kept->m_isOnDevice ? read(*kept) : nullptr;
     if (!nodes || kept->m_count != static_cast<std::size_t>(body.m_nodes.size())) return false;
     for (std::size_t i = 0; i < kept->m_count; ++i)
     {
@@ -317,10 +317,10 @@ bool KeptBodies::fetch(const btSoftBody& body, const NodeArrays& arrays)
     return true;
 }
 
-bool KeptBodies::isAway(const btSoftBody& body) const
+bool KeptBodies::isOnDevice(const btSoftBody& body) const
 {
     const Kept* const kept = find(body);
-    return kept && kept->m_isAway;
+    return kept && kept->m_isOnDevice;
 }
 
 bool KeptBodies::anyBegun() const
@@ -371,7 +371,7 @@ bool KeptBodies::isRead(const btSoftBody& body, const btCollisionObject& object)
 const KeptStep* KeptBodies::stepOf(const btSoftBody& body) const
 {
     const Kept* const kept = find(body);
-    return kept && kept->m_isAway && kept->m_isBegun ? &kept->m_step : nullptr;
+    return kept && kept->m_isOnDevice && kept->m_isBegun ? &kept->m_step : nullptr;
 }
 
 const KeptBoxes& KeptBodies::boxesOf(const btSoftBody& body) const
@@ -379,21 +379,21 @@ const KeptBoxes& KeptBodies::boxesOf(const btSoftBody& body) const
     return stage()->kept().boxes(find(body)->m_id);
 }
 
-void KeptBodies::callHome(const btSoftBody& body)
+void KeptBodies::beginBringing(const btSoftBody& body)
 {
     beginFetch(body);
     Kept& kept = *find(body);
-    kept.m_isCalled = kept.m_isReading;
+    kept.m_isBringing = kept.m_isReading;
 }
 
 // Pinned nodes stay where Bullet has them if the app moved them.
-void KeptBodies::comeHome(btSoftBody& body)
+void KeptBodies::bringToHost(btSoftBody& body)
 {
     Kept& kept = *find(body);
-    if (!kept.m_isCalled) kept.m_isReading = false;  // a transfer of an earlier step's nodes
-    kept.m_isCalled = false;
+    if (!kept.m_isBringing) kept.m_isReading = false;  // a transfer of an earlier step's nodes
+    kept.m_isBringing = false;
     const KeptNode* const nodes = read(kept);
-    kept.m_isAway = kept.m_isBegun = false;
+    kept.m_isOnDevice = kept.m_isBegun = false;
     if (!nodes) return;
     std::size_t pin = 0;
     for (int i = 0; i < countOf(body, kept.m_count); ++i)
@@ -403,7 +403,7 @@ void KeptBodies::comeHome(btSoftBody& body)
         const bool isMoved = isPin && node.m_x != kept.m_pinnedAt[pin];
         if (isPin) ++pin;
         node.m_q = vectorOf(nodes[i].m_position);
-        node.m_f.setZero();  // the app added these while the body was away
+        node.m_f.setZero();  // the app added these while the body was on the device
         if (isMoved) continue;
         node.m_x = node.m_q;
         node.m_v = vectorOf(nodes[i].m_velocity);
@@ -440,7 +440,7 @@ void KeptBodies::store(btSoftBody& body, Kept& kept)
     kept.m_links = body.m_links.size();
     kept.m_step = stepOver(body, kept.m_id);
     stage()->kept().write(kept.m_id, nodes, boxesAround(body, kept.m_step));
-    kept.m_isAway = true;
+    kept.m_isOnDevice = true;
 }
 
 void KeptBodies::endStep(btSoftBody& body, const btSoftBodySolver* bulletSolver, bool hasPair)
@@ -455,8 +455,8 @@ void KeptBodies::endStep(btSoftBody& body, const btSoftBodySolver* bulletSolver,
     }
     kept->m_solver = bulletSolver;
     kept->m_hadPair = hasPair;
-    // A free body would come home in the next step.
-    if (!m_isRetired && !kept->m_isAway && (hasPair || anyPinned(body))) store(body, *kept);
+    // The next step would bring a free body to the host.
+    if (!m_isRetired && !kept->m_isOnDevice && (hasPair || anyPinned(body))) store(body, *kept);
     kept->m_isBegun = false;
 }
 }  // namespace drape

@@ -1,9 +1,10 @@
 // Bodies whose nodes stay on the device between steps (Plugin::keepOnDevice()).
 //
-// A kept body is away while the device's nodes are newer than Bullet's. Its step begins without nodes: the device
-// predicts it, and bounds come from boxes that the last step left. Where a step needs the nodes, the body comes home:
-// it gets the nodes of the last step's end, and the step goes on as for any body, with the same bits. At the step's end
-// its nodes are stored again. Cost of a step away: some comparisons, and one for each pinned node.
+// A kept body is on the device while the device's nodes are newer than Bullet's, else on the host. On the device its
+// step begins without nodes: the device predicts it, and bounds come from boxes that the last step left. A step that
+// needs the nodes brings the body to the host: it gets the nodes of the last step's end, and the step goes on as for
+// any body, with the same bits. At the step's end its nodes are stored on the device again. Cost of a step on the
+// device: some comparisons, and one for each pinned node.
 //
 // Input: bodies that are alive; others are only compared. Errors: a device that fails leaves bodies with the nodes that
 // Bullet has.
@@ -36,10 +37,10 @@ public:
     // Starts the transfer of a body's nodes to the host.
     void beginFetch(const btSoftBody& body);
     // Gives Bullet's nodes, or the arrays, the nodes of beginFetch(), or those of the last step. Returns whether the
-    // body was away.
+    // body was on the device.
     bool fetch(btSoftBody& body);
     bool fetch(const btSoftBody& body, const NodeArrays& arrays);
-    // Brings bodies home in their next step, and keeps them no more: nobody is left to fetch them.
+    // Brings bodies to the host in their next step, and keeps them no more: nobody is left to fetch them.
     void retire() { m_isRetired = true; }
     // Gives all bodies their nodes as far as possible, and keeps none. Throws nothing.
     void abandon() noexcept;
@@ -47,26 +48,26 @@ public:
     // Forgets bodies that the solver stepped and that are not among its bodies any more. Does not follow them.
     void forgetRemoved(const btSoftBodySolver* solver, const btAlignedObjectArray<btSoftBody*>& bodies);
     bool any() const { return !m_bodies.empty(); }
-    bool isAway(const btSoftBody& body) const;
-    // Returns whether any body's step has begun away.
+    bool isOnDevice(const btSoftBody& body) const;
+    // Returns whether any body's step has begun on the device.
     bool anyBegun() const;
     // Returns whether a node of the stored body is pinned.
     bool hasPins(const btSoftBody& body) const;
-    // Begins a step of dt seconds of a body that is away. Returns false if it must come home first.
+    // Begins a step of dt seconds of a body on the device. Returns false if it must be brought to the host first.
     bool begin(btSoftBody& body, btScalar dt);
     // Returns whether Bullet's own algorithm may find contacts of the body with the object.
     bool isRead(const btSoftBody& body, const btCollisionObject& object) const;
-    // Returns the step that was begun; null for a body that is at home.
+    // Returns the step that was begun; null for a body on the host.
     const KeptStep* stepOf(const btSoftBody& body) const;
     // Returns the boxes of that step.
     const KeptBoxes& boxesOf(const btSoftBody& body) const;
-    // Starts the transfer for comeHome(), so that several bodies share a wait.
-    void callHome(const btSoftBody& body);
+    // Starts the transfer for bringToHost(), so that several bodies share a wait.
+    void beginBringing(const btSoftBody& body);
     // Gives the body the nodes of the last step's end.
-    void comeHome(btSoftBody& body);
-    // Returns whether a solver's step had contacts for the body when it was last away or stored.
+    void bringToHost(btSoftBody& body);
+    // Returns whether a solver's step had contacts for the body when it was last on the device.
     bool hadPair(const btSoftBody& body) const;
-    // Ends a step: bodies at home are stored. hasPair: the step looked for contacts of the body.
+    // Ends a step: bodies on the host are stored on the device. hasPair: the step looked for contacts of the body.
     void endStep(btSoftBody& body, const btSoftBodySolver* solver, bool hasPair);
 
 private:
@@ -77,14 +78,14 @@ private:
         std::size_t m_count = 0;                     // nodes
         int m_faces = 0, m_links = 0;                // numbers when the nodes were stored
         std::uint64_t m_revision = 0;                // the stage's
-        bool m_isAway = false;
+        bool m_isOnDevice = false;
         bool m_isBegun = false;  // m_step is the running step
         bool m_hadPair = false;
         KeptStep m_step;
         std::vector<int> m_pins;
         std::vector<btVector3> m_pinnedAt;
-        bool m_isReading = false;  // a transfer was begun
-        bool m_isCalled = false;   // by callHome()
+        bool m_isReading = false;   // a transfer was begun
+        bool m_isBringing = false;  // by beginBringing()
         std::size_t m_waitsBefore = 0;
     };
 

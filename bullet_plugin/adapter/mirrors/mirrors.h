@@ -84,7 +84,7 @@ public:
     bool isWatched() const { return m_isWatched; }
     // Counts up with each startAnew().
     std::uint64_t startRevision() const { return m_startRevision; }
-    // Records the nodes' positions at a step's end: m_x after it, m_q for nodes that came home since.
+    // Records the nodes' positions at a step's end: m_x after it, m_q for nodes that were brought to the host since.
     void rememberEnds(ThreadTeam& threads, btVector3 btSoftBody::Node::*where = &btSoftBody::Node::m_x);
     // Lists the nodes whose step starts (m_q) away from the last recorded end; all nodes if no end was recorded.
     void listJumped(ThreadTeam& threads, std::vector<int>& nodes) const;

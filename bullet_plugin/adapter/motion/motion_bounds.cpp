@@ -88,7 +88,7 @@ struct Way
         forRanges(static_cast<std::size_t>(body.m_nodes.size()), threads, read);
     }
 
-    // The extents of a body that is away.
+    // The extents of a body on the device.
     explicit Way(const KeptBoxes& boxes)
     {
         const auto toExtent = [&](int box)
@@ -106,7 +106,7 @@ struct Way
     }
     static Way of(const PluginState& state, const btSoftBody& body, ThreadTeam* threads)
     {
-        return state.m_kept.isAway(body) ? Way(state.m_kept.boxesOf(body)) : Way(body, threads);
+        return state.m_kept.isOnDevice(body) ? Way(state.m_kept.boxesOf(body)) : Way(body, threads);
     }
 
     // The paths as an obstacle sees them beside its bounds: those of its own pose, which the motion may not have
@@ -262,8 +262,8 @@ bool isReached(const PluginState& state, const btSoftBody& body, const std::vect
     const auto isActive = [](const StepObstacle& obstacle) { return obstacle.isActive(); };
     if (std::none_of(obstacles.begin(), obstacles.end(), isActive)) return false;
     Way rest = Way::of(state, body, nullptr);
-    (state.m_kept.isAway(body) ? rest.m_end : rest.m_start) =
-        state.m_kept.isAway(body) ? rest.m_start : rest.m_end;  // the last step that it was awake in is over
+    (state.m_kept.isOnDevice(body) ? rest.m_end : rest.m_start) =
+        state.m_kept.isOnDevice(body) ? rest.m_start : rest.m_end;  // the last step that it was awake in is over
     if (rest.m_end.empty()) return false;
     const btScalar reach = reachOf(state, body);
     return std::any_of(obstacles.begin(), obstacles.end(),

@@ -97,7 +97,7 @@ void SoftBodySolver::leaveToBullet()
     {
         if (!leaving[i]) continue;
         btSoftBody& body = *m_softBodySet[int(i)];
-        if (m_state->m_kept.stepOf(body)) m_work->bringHome(body);
+        if (m_state->m_kept.stepOf(body)) m_work->bringToHost(body);
         m_work->substepsOf(body)->leave(body);
     }
 }
@@ -114,11 +114,11 @@ void SoftBodySolver::detect()
     StepStatistics& statistics = m_state->m_statistics;
     if (work.m_usage.hasFallen(elementsOf(statistics))) work.giveBackRoom(*m_state);
     Stopwatch watch;
-    step.begin(m_state->takeNotes(this, work.m_predicted), [&work](btSoftBody& body) { work.bringHome(body); });
-    work.bringFreeHome(m_softBodySet);
+    step.begin(m_state->takeNotes(this, work.m_predicted), [&work](btSoftBody& body) { work.bringToHost(body); });
+    work.bringFreeToHost(m_softBodySet);
     work.m_parts.m_mirrorMs += watch.lapMs();
     const bool follows = work.m_stage && work.mayFollow();
-    if (!follows) work.bringAllHome(m_softBodySet);
+    if (!follows) work.bringAllToHost(m_softBodySet);
     step.submit(follows ? ContactPlace::Device : ContactPlace::Host);
     const double uploadMs = step.uploadMs();
     watch.lapMs();
@@ -129,9 +129,9 @@ void SoftBodySolver::detect()
     step.finish(submitted ? [&takeSolved] { takeSolved(true); } : CollisionStep::TakeSolved());
     if (submitted && !step.hasPairs()) takeSolved(false);
     if (submitted)
-        work.bringUnsolvedHome(m_softBodySet);
+        work.bringUnsolvedToHost(m_softBodySet);
     else
-        work.bringAllHome(m_softBodySet);
+        work.bringAllToHost(m_softBodySet);
     for (int i = 0; i < m_softBodySet.size(); ++i)
         step.reportInvalid(*m_softBodySet[i]);
     work.m_detected = true;
@@ -161,7 +161,7 @@ void SoftBodySolver::solveBodies(StepParts& parts)
     parts.m_readMs += watch.lapMs();
     if (work.solveByBullet(m_softBodySet)) parts.m_bulletMs += watch.lapMs();
     // The host solves what the device has refused.
-    m_state->m_statistics.m_clothsOnDevice =
+    m_state->m_statistics.m_clothsSolvedOnDevice =
         work.m_onDevice + work.m_solver->solve(work.m_touched, work.m_free, m_state->m_found.source(),
                                                work.m_onDevice > 0 ? nullptr : work.m_stage);
     double linksMs = 0;
@@ -227,7 +227,7 @@ void SoftBodySolver::solveStep()
     closeOffPath(step->checkOffPath());
     step->reportMeetingDeformed();
     step->end();
-    statistics.m_clothsAway = m_work->endKept(m_softBodySet);
+    statistics.m_clothsKept = m_work->endKept(m_softBodySet);
     parts.m_uploadMs = step->uploadMs();
     parts.m_checkMs = watch.lapMs() - (statistics.m_waitMs - waitMs) - (parts.m_uploadMs - uploadMs);
     parts.m_waitMs = statistics.m_waitMs;
@@ -248,12 +248,12 @@ void SoftBodySolver::endFailedStep()
     {
         btSoftBody& body = *m_softBodySet[i];
         const SubstepBody* const substeps = work.substepsAt(body);
-        const bool isAway = substeps && substeps->isAway();  // its nodes are those of the last step's end
-        if (work.isSolved(i) || !work.isSteppedBody(body) || isAway) continue;
+        const bool isOnDevice = substeps && substeps->isOnDevice();  // its nodes are those of the last step's end
+        if (work.isSolved(i) || !work.isSteppedBody(body) || isOnDevice) continue;
         if (handlesSteppedCloth(*m_state, body))
         {
             const BodyContacts* const contacts = work.m_detected ? work.contactsOf(body) : nullptr;
-            holdStill(body, contacts && !contacts->m_isAway ? contacts : nullptr);
+            holdStill(body, contacts && !contacts->m_isOnDevice ? contacts : nullptr);
         }
         else
             drape::solveByBullet(body);
@@ -286,7 +286,7 @@ void SoftBodySolver::readByBullet(btSoftBody& body, const btCollisionObject& obj
     const auto failed = [&](const CaughtException& caught)
     { m_state->fail("drape::SoftBodySolver::processCollision", caught); };
     if (m_state->m_kept.stepOf(body) && m_state->m_kept.isRead(body, object))
-        guarded([&] { m_work->bringHome(body); }, failed);
+        guarded([&] { m_work->bringToHost(body); }, failed);
     m_state->updateNodeTree(body);
 }
 
@@ -308,11 +308,12 @@ void SoftBodySolver::updateSoftBodies()
     Stopwatch watch;
     // Without a state Bullet's function does the same on this thread.
     if (!m_work) return btDefaultSoftBodySolver::updateSoftBodies();
-    const auto isAtHome = [this](const btSoftBody& body) { return body.isActive() && !m_state->m_kept.isAway(body); };
+    const auto isOnHost = [this](const btSoftBody& body)
+    { return body.isActive() && !m_state->m_kept.isOnDevice(body); };
     const auto sizeOf = [&](std::size_t i)
     {
         const btSoftBody& body = *m_softBodySet[int(i)];
-        return isAtHome(body) ? static_cast<std::size_t>(body.m_nodes.size()) : 0;
+        return isOnHost(body) ? static_cast<std::size_t>(body.m_nodes.size()) : 0;
     };
     // Normals are written to the body alone, and nothing else is read: integrateMotion() of Bullet 3.24 only calls
     // updateNormals().

@@ -42,27 +42,28 @@ void SoftBodySolver::Work::predictOne(btSoftBody& body, ThreadTeam* threads, con
 }
 
 // Begins the steps of bodies whose nodes are on the device, or gives them the nodes of the last step's end.
-void SoftBodySolver::Work::beginAway(const Bodies& bodies)
+void SoftBodySolver::Work::beginOnDevice(const Bodies& bodies)
 {
     if (!m_state.m_kept.any()) return;
-    const auto isAway = [&](int i) { return bodies[i]->isActive() && m_state.m_kept.isAway(*bodies[i]); };
+    const auto isOnDevice = [&](int i) { return bodies[i]->isActive() && m_state.m_kept.isOnDevice(*bodies[i]); };
     for (int i = 0; i < bodies.size(); ++i)
     {
-        if (!isAway(i)) continue;
+        if (!isOnDevice(i)) continue;
         SubstepBody* const substeps = substepsAt(*bodies[i]);
         if (substeps && m_state.m_kept.begin(*bodies[i], m_dt))
-            substeps->predictAway();
+            substeps->predictOnDevice();
         else
-            m_state.m_kept.callHome(*bodies[i]);
+            m_state.m_kept.beginBringing(*bodies[i]);
     }
     for (int i = 0; i < bodies.size(); ++i)
-        if (isAway(i) && !m_state.m_kept.stepOf(*bodies[i])) m_state.bringHome(*bodies[i]);
+        if (isOnDevice(i) && !m_state.m_kept.stepOf(*bodies[i])) m_state.bringToHost(*bodies[i]);
 }
 
-// Brings a body home whose step has begun without its nodes, and predicts them. The broad phase keeps the bounds.
-void SoftBodySolver::Work::bringHome(btSoftBody& body)
+// Brings a body to the host whose step has begun without its nodes, and predicts them. The broad phase keeps the
+// bounds.
+void SoftBodySolver::Work::bringToHost(btSoftBody& body)
 {
-    m_state.bringHome(body);
+    m_state.bringToHost(body);
     const btVector3 bounds[2] = {body.m_bounds[0], body.m_bounds[1]};
     predictOne(body, &m_threads, [this](btSoftBody& plain) { predictAndLeaveTree(plain, m_dt, &m_threads); });
     std::copy(bounds, bounds + 2, body.m_bounds);
@@ -92,10 +93,10 @@ void SoftBodySolver::Work::predict(const Bodies& bodies, btScalar dt)
 {
     m_dt = dt;
     m_seesReads = seesReads(bodies);
-    beginAway(bodies);
-    const auto isAway = [this](const btSoftBody& body) { return m_state.m_kept.isAway(body); };
+    beginOnDevice(bodies);
+    const auto isOnDevice = [this](const btSoftBody& body) { return m_state.m_kept.isOnDevice(body); };
     const auto isPlainAt = [&](int i)
-    { return bodies[i]->isActive() && !isAway(*bodies[i]) && isPlain(*bodies[i], dt); };
+    { return bodies[i]->isActive() && !isOnDevice(*bodies[i]) && isPlain(*bodies[i], dt); };
     const auto sizeOf = [&](std::size_t i)
     { return isPlainAt(int(i)) ? static_cast<std::size_t>(bodies[int(i)]->m_nodes.size()) : 0; };
     const auto predictAt = [&](std::size_t i, ThreadTeam* threads)
@@ -112,7 +113,7 @@ void SoftBodySolver::Work::predict(const Bodies& bodies, btScalar dt)
     for (int i = 0; i < bodies.size(); ++i)
     {
         if (!bodies[i]->isActive()) continue;
-        if (isPlainAt(i) || isAway(*bodies[i]))
+        if (isPlainAt(i) || isOnDevice(*bodies[i]))
             updateBroadphase(*bodies[i]);
         else
             predictOne(*bodies[i], nullptr, byBullet);

@@ -102,60 +102,60 @@ bool SoftBodySolver::Work::mayFollow() const
     return std::all_of(m_step->bodies().begin(), m_step->bodies().end(), fits);
 }
 
-// Brings bodies home whose step has begun away and for which isNeeded(body) is true, with one wait.
+// Brings bodies to the host whose step has begun on the device and for which isNeeded(body) is true, with one wait.
 template <class Needed>
-void SoftBodySolver::Work::bringHomeWhere(const Bodies& bodies, const Needed& isNeeded)
+void SoftBodySolver::Work::bringToHostWhere(const Bodies& bodies, const Needed& isNeeded)
 {
     if (!m_state.m_kept.any()) return;
     std::vector<btSoftBody*> called;
     for (int i = 0; i < bodies.size(); ++i)
     {
         if (!m_state.m_kept.stepOf(*bodies[i]) || !isNeeded(*bodies[i])) continue;
-        m_state.m_kept.callHome(*bodies[i]);
+        m_state.m_kept.beginBringing(*bodies[i]);
         called.push_back(bodies[i]);
     }
     for (btSoftBody* body : called)
-        bringHomeInStep(*body);
+        bringToHostInStep(*body);
 }
 
-// Brings bodies home that nothing holds, whose momentum the host keeps.
-void SoftBodySolver::Work::bringFreeHome(const Bodies& bodies)
+// Brings bodies to the host that nothing holds: the host keeps their momentum.
+void SoftBodySolver::Work::bringFreeToHost(const Bodies& bodies)
 {
-    bringHomeWhere(bodies,
-                   [this](const btSoftBody& body) { return !contactsOf(body) && !m_state.m_kept.hasPins(body); });
+    bringToHostWhere(bodies,
+                     [this](const btSoftBody& body) { return !contactsOf(body) && !m_state.m_kept.hasPins(body); });
 }
 
-void SoftBodySolver::Work::bringAllHome(const Bodies& bodies)
+void SoftBodySolver::Work::bringAllToHost(const Bodies& bodies)
 {
-    bringHomeWhere(bodies, [](const btSoftBody&) { return true; });
+    bringToHostWhere(bodies, [](const btSoftBody&) { return true; });
 }
 
-// Brings a body home after the step's begin(), which knows whether it is away.
-void SoftBodySolver::Work::bringHomeInStep(btSoftBody& body)
+// Brings a body to the host after the step's begin(), which knows whether it is on the device.
+void SoftBodySolver::Work::bringToHostInStep(btSoftBody& body)
 {
     if (BodyContacts* const contacts = contactsOf(body))
-        m_step->bringHome(*contacts);
+        m_step->bringToHost(*contacts);
     else
-        bringHome(body);
+        bringToHost(body);
 }
 
-// Brings bodies home that the device has not solved.
-void SoftBodySolver::Work::bringUnsolvedHome(const Bodies& bodies)
+// Brings bodies to the host that the device has not solved.
+void SoftBodySolver::Work::bringUnsolvedToHost(const Bodies& bodies)
 {
-    bringHomeWhere(bodies, [this](const btSoftBody& body) { return !clothOf(body).m_isSolved; });
+    bringToHostWhere(bodies, [this](const btSoftBody& body) { return !clothOf(body).m_isSolved; });
 }
 
-// Stores the nodes of kept bodies that are at home. Returns the number of bodies whose step began and ended away.
+// Stores the nodes of kept bodies on the host. Returns the number of bodies whose step began and ended on the device.
 std::size_t SoftBodySolver::Work::endKept(const Bodies& bodies)
 {
-    std::size_t away = 0;
+    std::size_t kept = 0;
     for (int i = 0; i < bodies.size(); ++i)
     {
         if (!isSteppedBody(*bodies[i])) continue;
-        away += m_state.m_kept.isAway(*bodies[i]);
+        kept += m_state.m_kept.isOnDevice(*bodies[i]);
         m_state.m_kept.endStep(*bodies[i], &m_owner, contactsOf(*bodies[i]) != nullptr);
     }
-    return away;
+    return kept;
 }
 
 // Enqueues the step of all bodies behind the detection. Returns false, with nothing enqueued, if that is not possible.

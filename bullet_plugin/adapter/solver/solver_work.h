@@ -79,14 +79,14 @@ struct SoftBodySolver::Work
     bool solveByBullet(const Bodies& bodies);
 
     // Bodies whose nodes are on the device (kept_bodies.h).
-    void beginAway(const Bodies& bodies);
-    void bringHome(btSoftBody& body);
-    void bringHomeInStep(btSoftBody& body);
+    void beginOnDevice(const Bodies& bodies);
+    void bringToHost(btSoftBody& body);
+    void bringToHostInStep(btSoftBody& body);
     template <class Needed>
-    void bringHomeWhere(const Bodies& bodies, const Needed& isNeeded);
-    void bringFreeHome(const Bodies& bodies);
-    void bringUnsolvedHome(const Bodies& bodies);
-    void bringAllHome(const Bodies& bodies);
+    void bringToHostWhere(const Bodies& bodies, const Needed& isNeeded);
+    void bringFreeToHost(const Bodies& bodies);
+    void bringUnsolvedToHost(const Bodies& bodies);
+    void bringAllToHost(const Bodies& bodies);
     std::size_t endKept(const Bodies& bodies);
 
     // Releases memory that only earlier, larger steps needed. Call before a step's begin().

@@ -73,7 +73,7 @@ btScalar SubstepBody::pathShift(const btSoftBody& body)
 
 void SubstepBody::reserve(const btSoftBody& body)
 {
-    m_isPredicted = m_isAway = false;
+    m_isPredicted = m_isOnDevice = false;
     const std::size_t count = body.isActive() ? nodeCount(body) : 0;
     if (m_velocities.size() != count) m_velocities.clear();
     if (count == 0) return;
@@ -98,7 +98,7 @@ void SubstepBody::afterPrediction(btSoftBody& body, ThreadTeam* threads)
     if (!(body.m_sst.sdt > 0) || m_velocities.size() != nodeCount(body)) return;
     const btScalar shift = pathShift(body), perSecond = body.m_sst.isdt;
     m_isPredicted = true;
-    m_isAway = false;
+    m_isOnDevice = false;
     const auto bring = [&](std::size_t first, std::size_t last)
     {
         for (std::size_t i = first; i < last; ++i)
@@ -253,7 +253,7 @@ void SubstepBody::begin(const btSoftBody& body, ClothContacts* recorded, const C
 
 void SubstepBody::readPaths(const btSoftBody& body, ClothContacts* recorded, ThreadTeam* threads)
 {
-    if (m_isAway) return;
+    if (m_isOnDevice) return;
     SolverNodes& nodes = recorded ? recorded->m_nodes : m_alone.m_nodes;
     const auto read = [&](std::size_t first, std::size_t last)
     {

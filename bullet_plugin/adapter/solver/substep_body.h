@@ -42,9 +42,9 @@ public:
     // Allocates no memory.
     void afterPrediction(btSoftBody& body, ThreadTeam* threads);
     // Begins a step whose nodes the device predicts (kept_bodies.h).
-    void predictAway() { m_isPredicted = m_isAway = true; }
+    void predictOnDevice() { m_isPredicted = m_isOnDevice = true; }
     // Returns whether the step has begun so, and the nodes have not come since.
-    bool isAway() const { return m_isAway; }
+    bool isOnDevice() const { return m_isOnDevice; }
     // Returns how far the end of a free path in substeps lies from Bullet's prediction, per unit of acceleration, s².
     static btScalar pathShift(const btSoftBody& body);
     // Returns whether the body has the nodes of the prediction.
@@ -96,7 +96,7 @@ private:
     void setLinks(const btSoftBody& body, ThreadTeam* threads);
 
     bool m_isPredicted = false;
-    bool m_isAway = false;                // the device predicts the nodes
+    bool m_isOnDevice = false;            // the device predicts the nodes
     std::vector<btVector3> m_velocities;  // before the prediction, m/s
     std::vector<Vec3> m_accelerations;    // m/s², constant in the step
     std::vector<Prediction> m_predictions;

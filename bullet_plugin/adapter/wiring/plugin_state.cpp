@@ -403,9 +403,9 @@ const ClothMirror* PluginState::mirrorOf(const btSoftBody& body) const
     return found == m_cloths.end() ? nullptr : &found->second;
 }
 
-void PluginState::bringHome(btSoftBody& body)
+void PluginState::bringToHost(btSoftBody& body)
 {
-    m_kept.comeHome(body);
+    m_kept.bringToHost(body);
     ClothMirror* const mirror = findCloth(&body);
     if (mirror && m_kept.hadPair(body)) mirror->rememberEnds(threads(), &btSoftBody::Node::m_q);
 }

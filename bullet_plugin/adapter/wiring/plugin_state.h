@@ -121,8 +121,8 @@ public:
     // Takes the notes of the given cloths, which are sorted by address. Omits obstacles whose noted shape is gone.
     std::vector<PairNote> takeNotes(const btSoftBodySolver* solver, const std::vector<const btSoftBody*>& cloths);
 
-    // Gives a kept body that is away the nodes of the last step's end. They count as that step's own.
-    void bringHome(btSoftBody& body);
+    // Gives a kept body on the device the nodes of the last step's end. They count as that step's own.
+    void bringToHost(btSoftBody& body);
     // Returns the mirrors of a noted pair, and makes missing ones. Counts the step for dropOldMirrors().
     ClothMirror& clothMirror(const PairNote& note);
     ObstacleMirror& obstacleMirror(const PairNote& note);

@@ -118,7 +118,7 @@ public:
     //
     // A step that needs the nodes on the host brings them there by itself, and computes the same. It does so beside
     // objects whose contacts Bullet's own algorithm finds, at impacts, in free fall, and with moved pins or another
-    // time step. StepStatistics::m_clothsAway counts the others.
+    // time step. StepStatistics::m_clothsKept counts the others.
     //
     // Returns an empty string, or why the body cannot be kept; "out of memory" if memory runs out. The body must stay
     // alive and in its world until `keep` is false, which fetches its nodes. If the device fails, the nodes of the last

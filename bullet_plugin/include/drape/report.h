@@ -186,9 +186,9 @@ struct StepStatistics : StepCounts, StepParts
     // Cloths without work: asleep at the step's start, pinned, or without a time step.
     std::size_t m_clothsSkipped = 0;
     // Cloths whose links and contacts an OpenCL device solved (Settings::m_solverPlace).
-    std::size_t m_clothsOnDevice = 0;
+    std::size_t m_clothsSolvedOnDevice = 0;
     // Cloths whose nodes stayed on the device (Plugin::keepOnDevice()).
-    std::size_t m_clothsAway = 0;
+    std::size_t m_clothsKept = 0;
     // Times that the host waited for the device. Once, if the device solves all cloths of the step and no path of a
     // node meets a surface.
     std::size_t m_deviceWaits = 0;
