@@ -56,7 +56,7 @@ typedef struct SolveCloth
     float m_perStep;            // 1/s
     float m_pathShare;          // s, see nodeBegin()
     float m_perCorrection;      // 1/s
-    float m_kept;               // share of a velocity that damping leaves in a substep
+    float m_undamped;           // share of a velocity that damping leaves in a substep
     float m_perShift;           // 1/s, velocity per metre of a closing shift
     float m_perSecond;          // 1/s, steps per second
     float m_hardness;           // see targetGap()

@@ -63,7 +63,7 @@ struct BodyContacts
     SolverNodes& nodes() { return m_contacts.m_nodes; }
     const SolverNodes& nodes() const { return m_contacts.m_nodes; }
     // Speed that a node loses per metre of its path that is taken away, 1/s, as in Bullet's own update.
-    float perSecond() const { return m_contacts.m_perSecond * m_contacts.m_kept; }
+    float perSecond() const { return m_contacts.m_perSecond * m_contacts.m_undamped; }
 
     // Resets the record for a body of another step. Memory is kept.
     void start(MeshId cloth, btSoftBody* body, const ClothParts& parts, const FeatureOrder& order)
@@ -74,7 +74,7 @@ struct BodyContacts
         m_contacts.m_friction = float(body->m_cfg.kDF);
         m_contacts.m_hardness = float(body->m_cfg.kKHR);
         m_contacts.m_perSecond = float(body->m_sst.isdt);
-        m_contacts.m_kept = float(1 - body->m_cfg.kDP);
+        m_contacts.m_undamped = float(1 - body->m_cfg.kDP);
         m_leftOut = m_heldTogether = m_obstacleJumps = m_hasDeformedPair = false;
         m_isOnDevice = m_meetsSurface = m_isOffPath = false;
         m_tangled.clear();

@@ -45,7 +45,7 @@ struct ClothContacts
     float m_friction = 0;          // the cloth's factor of a contact's coefficient
     float m_hardness = 0;          // see targetGap()
     float m_perSecond = 0;         // 1/s, steps per second
-    float m_kept = 1;              // share of a velocity that damping leaves in a step
+    float m_undamped = 1;          // share of a velocity that damping leaves in a step
     bool m_mayHavePassed = false;  // a contact is left so near that a surface may have been passed
     bool m_isSolved = false;       // the step is solved
 

@@ -70,7 +70,7 @@ void rememberAll(SolverNodes& nodes)
 
 void addShifts(ClothContacts& contacts)
 {
-    const float perSecond = contacts.m_perSecond * contacts.m_kept;
+    const float perSecond = contacts.m_perSecond * contacts.m_undamped;
     for (std::size_t i = 0; i < contacts.m_nodes.count(); ++i)
         contacts.m_nodes.addShift(i, perSecond);
 }

@@ -27,7 +27,7 @@ static void advanceNodes(const Solve* solve, const SolveRange nodes)
 static void endNodes(const Solve* solve, const SolveRange nodes)
 {
     forAll(i, nodes.m_first, nodes.m_first + nodes.m_count)
-        nodeEnd(nodeAt(solve, i), solve->m_states + i, solve->m_cloth->m_perCorrection, solve->m_cloth->m_kept);
+        nodeEnd(nodeAt(solve, i), solve->m_states + i, solve->m_cloth->m_perCorrection, solve->m_cloth->m_undamped);
 }
 
 // See StepSolver::settle().

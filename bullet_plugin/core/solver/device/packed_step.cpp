@@ -102,8 +102,8 @@ void PackedStep::packCloth(std::size_t index, const ContactSource& source, const
     cloth.m_perStep = substeps.perStep();
     cloth.m_pathShare = substeps.pathTime();
     cloth.m_perCorrection = 1 / substeps.correctionTime();
-    cloth.m_kept = substeps.kept();
-    cloth.m_perShift = contacts.m_perSecond * contacts.m_kept;
+    cloth.m_undamped = substeps.undamped();
+    cloth.m_perShift = contacts.m_perSecond * contacts.m_undamped;
     cloth.m_perSecond = contacts.m_perSecond;
     cloth.m_hardness = contacts.m_hardness;
     cloth.m_mostThickness = contacts.m_mostThickness;

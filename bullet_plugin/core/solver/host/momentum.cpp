@@ -67,7 +67,7 @@ struct Kept
     {
         for (int i = 0; i < substeps.count(); ++i)
         {
-            m_before *= double(substeps.kept());
+            m_before *= double(substeps.undamped());
             m_received += m_before / substeps.count();
         }
     }

@@ -42,7 +42,7 @@ void Substeps::prepare(float time, int count, float damping, const std::vector<V
         m_leastRatio = kLeastRatio;
     }
     m_accelerations = &accelerations;
-    m_kept = float(std::pow(1 - std::min(1.0, std::max(0.0, double(damping))), 1.0 / count));
+    m_undamped = float(std::pow(1 - std::min(1.0, std::max(0.0, double(damping))), 1.0 / count));
 }
 
 void Substeps::begin(SolverNodes& nodes, ThreadTeam* threads)
@@ -64,7 +64,7 @@ void Substeps::advance(SolverNodes& nodes, ThreadTeam* threads)
 void Substeps::end(SolverNodes& nodes, ThreadTeam* threads) const
 {
     forNodes(nodes.count(), threads,
-             [&](std::size_t i) { nodeEnd(nodes.nodes() + i, nodes.states() + i, 1 / m_correctionTime, m_kept); });
+             [&](std::size_t i) { nodeEnd(nodes.nodes() + i, nodes.states() + i, 1 / m_correctionTime, m_undamped); });
 }
 
 void Substeps::run(SolverNodes& nodes, ThreadTeam* threads)

@@ -35,7 +35,7 @@ public:
     // Returns the inverse of the step's time, 1/s.
     float perStep() const { return 1 / m_time; }
     // Returns the share of a velocity that damping leaves in a substep.
-    float kept() const { return m_kept; }
+    float undamped() const { return m_undamped; }
     // Returns the share of the acceleration in a node's mean velocity, s.
     float pathTime() const { return pathShare(m_count) * m_time; }
     const Vec3* accelerations() const { return m_accelerations->data(); }
@@ -66,7 +66,7 @@ private:
     const std::vector<Vec3>* m_accelerations = nullptr;
     float m_time = 1;
     float m_correctionTime = 0;
-    float m_kept = 1;
+    float m_undamped = 1;
     int m_count = 1;
     float m_leastRatio = 1;  // minimum of m_correctionTime, as a share of that of the step before
     bool m_changesOver = false;
