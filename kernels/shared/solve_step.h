@@ -145,7 +145,7 @@ typedef struct SolveContact
     float m_level;          // m, with the margin for rounding
     float m_weights[2];     // second and third node
     DRAPE_UINT m_flags;     // DRAPE_CONTACT_MADE ...
-    DRAPE_UINT m_pushing;   // the stage in which the row pushed last
+    DRAPE_UINT m_pushing;   // the phase in which the row pushed last
     DRAPE_UINT m_nodes[3];  // the first one again where unused
     DRAPE_UINT m_rank;      // among the contacts of its feature; above bit 16 among those that act
 } SolveContact;

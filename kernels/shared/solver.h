@@ -51,8 +51,8 @@ typedef struct ContactRow
     float m_level;       // m, least displacement along the normal at the step's end
     Vec3 m_carried;      // m, displacement along the surface by the obstacle's motion in the step
     float m_advance;     // m, that displacement along the normal
-    Vec3 m_held;         // friction applied in this stage, in units of the multiplier
-    float m_multiplier;  // pushed in this stage, kg m
+    Vec3 m_held;         // friction applied in this phase, in units of the multiplier
+    float m_multiplier;  // pushed in this phase, kg m
     float m_weights[3];  // by node, sum 1
     float m_friction;
     float m_shares[3];        // by node, displacement per unit of the multiplier, 1/kg
@@ -68,8 +68,8 @@ typedef struct ActingContact
     ContactRow m_row;
     float m_distance;     // m, distance to keep from the contact's point: thickness plus target
     float m_speedLimit;   // m/s outwards when the contact pushed
-    DRAPE_UINT m_stage;   // in which the plane was renewed
-    DRAPE_UINT m_pushed;  // true if it pushed in any stage
+    DRAPE_UINT m_phase;   // in which the plane was renewed
+    DRAPE_UINT m_pushed;  // true if it pushed in any phase
     DRAPE_UINT m_unused[3];
 } ActingContact;
 

@@ -33,7 +33,7 @@ struct SweepCase
     std::string m_name;
     Motion m_motion;
     unsigned m_threads;
-    bool m_inParts;  // each stage runs later in the step, in turns with links; else at the step's end
+    bool m_inParts;  // each phase runs later in the step, in turns with links; else at the step's end
 };
 
 // Writes a rotation by 0.02 about (1, 2, 3) and a shift.
@@ -175,19 +175,19 @@ void expectSameNodes(const SolverNodes& nodes, const PlainSweep& plain)
     }
 }
 
-constexpr std::size_t kSweeps = 24, kStage = 4;  // sweeps in all and in a stage
+constexpr std::size_t kSweeps = 24, kPhase = 4;  // sweeps in all and in a phase
 
-// Runs a sweep of both. The third of each stage visits nodes alone.
+// Runs a sweep of both. The third of each phase visits nodes alone.
 void runBoth(SweepTeam& team, ContactSweep& sweep, PlainSweep& plain, std::size_t at, bool inParts)
 {
     const SweepTeam::Cloths cloths{&sweep};
-    if (at % kStage == 0)
+    if (at % kPhase == 0)
     {
-        const float passed = inParts ? float(at / kStage + 1) / float(kSweeps / kStage) : 1;
+        const float passed = inParts ? float(at / kPhase + 1) / float(kSweeps / kPhase) : 1;
         sweep.restart(passed, inParts ? DRAPE_ACTING_SWEEPS : 0);
         plain.restart(passed, inParts);
     }
-    if (at % kStage == 2)
+    if (at % kPhase == 2)
     {
         team.runNodes(cloths);
         ASSERT_EQ(SweepTeam::worst(sweep), plain.runNodes());

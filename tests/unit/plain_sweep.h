@@ -19,7 +19,7 @@ public:
     // which begin where the cloth's are.
     PlainSweep(const ClothContacts& cloth, const ContactSource& source, const std::vector<Contact>& contacts);
 
-    // Begins a stage, with no pushes. passed: the share of the step that has passed. inTurns: see ContactSweep.
+    // Begins a phase, with no pushes. passed: the share of the step that has passed. inTurns: see ContactSweep.
     void restart(float passed, bool inTurns);
     void move(std::size_t node, Vec3 by) { m_places[node] = vec3Add(m_places[node], by); }
     // Sweep once, and return the worst violation that a push can correct, m.
@@ -47,9 +47,9 @@ private:
         Vec3 m_held = {};
         std::size_t m_group = 0;
         int m_colour = 0;
-        bool m_renewed = false;    // or tried to, in this stage
-        bool m_acted = false;      // violated or pushing when it was last visited in this stage
-        bool m_everActed = false;  // in any stage
+        bool m_renewed = false;    // or tried to, in this phase
+        bool m_acted = false;      // violated or pushing when it was last visited in this phase
+        bool m_everActed = false;  // in any phase
         float m_speedLimit = 0;
     };
     enum class Kind

@@ -148,7 +148,7 @@ DRAPE_FUNCTION ActingContact actingContact(const FeatureNodes* nodes, const Cont
     contact.m_row.m_multiplier = 0.0f;
     contact.m_row.m_held = vec3(0.0f, 0.0f, 0.0f);
     contact.m_distance = settings->m_thickness + gaps.m_target;
-    contact.m_stage = contact.m_pushed = 0;
+    contact.m_phase = contact.m_pushed = 0;
     contact.m_unused[0] = contact.m_unused[1] = contact.m_unused[2] = 0;
     setPlane(&contact, nodes, plane);
     contact.m_speedLimit = DRAPE_INFINITY;

@@ -9,10 +9,10 @@
 #include "../geometry/rigid_motion.h"
 #include "solve_view.h"
 
-// A sweep over contacts: its stage, counted from 1, and where obstacles stand.
+// A sweep over contacts: its phase, counted from 1, and where obstacles stand.
 typedef struct Sweep
 {
-    uint m_stage;
+    uint m_phase;
     float m_passed;      // share of the step that has passed
     float m_tolerated;   // m, violation that a projection leaves
     float m_slack;       // m, bound on how far levels lie above those at the step's end
@@ -24,7 +24,7 @@ typedef struct Sweep
 
 DRAPE_HOT_FUNCTION void beginSweep(const Solve* solve, const uint substep, const int closes, Sweep* sweep)
 {
-    sweep->m_stage = substep + 1;
+    sweep->m_phase = substep + 1;
     sweep->m_passed = closes ? 1.0f : (float)(substep + 1) / (float)solve->m_cloth->m_substeps;
     sweep->m_tolerated = closes ? solve->m_cloth->m_tolerated : 0.0f;
     sweep->m_slack = (1.0f - sweep->m_passed) * solve->m_cloth->m_retreat;
@@ -169,7 +169,7 @@ DRAPE_RARE_FUNCTION void makeActing(const Solve* solve, const uint index, const 
 }
 
 // Renews the plane of a contact that turns.
-DRAPE_RARE_FUNCTION void renew(const Solve* solve, const uint index, const SolveContact* contact, const uint stage,
+DRAPE_RARE_FUNCTION void renew(const Solve* solve, const uint index, const SolveContact* contact, const uint phase,
                                const float passed)
 {
     ActingContact acting = solve->m_acting[index];
@@ -178,7 +178,7 @@ DRAPE_RARE_FUNCTION void renew(const Solve* solve, const uint index, const Solve
     const Displacements at = displacementsOf(solve, contact);
     const ContactPlane before = foundPlane(found);
     ContactPlane plane;
-    acting.m_stage = stage;
+    acting.m_phase = phase;
     const int turned = renewPlane(&acting, &nodes, at.m_nodes, passed, &before, &plane);
     solve->m_acting[index] = acting;
     if (!turned) return;
@@ -211,7 +211,7 @@ DRAPE_HOT_FUNCTION ActingContact loadActing(const Solve* solve, const uint index
     acting.m_row.m_shares[2] = shares.z;
     acting.m_row.m_inverseMobility = shares.w;
     acting.m_row.m_mended = rest.x;
-    acting.m_stage = as_uint(rest.w);
+    acting.m_phase = as_uint(rest.w);
     return acting;
 }
 
@@ -223,12 +223,12 @@ DRAPE_HOT_FUNCTION Vec3 rowWay(const ActingContact* acting, const uint count, co
     return way;
 }
 
-// Loads the row of a contact. Its pushes begin anew in each stage.
+// Loads the row of a contact. Its pushes begin anew in each phase.
 DRAPE_HOT_FUNCTION ActingContact loadRow(const Solve* solve, const uint index, const SolveContact* contact,
-                                         const uint stage)
+                                         const uint phase)
 {
     ActingContact acting = loadActing(solve, index);
-    if (contact->m_pushing != stage)
+    if (contact->m_pushing != phase)
     {
         acting.m_row.m_multiplier = 0.0f;
         acting.m_row.m_held = vec3(0.0f, 0.0f, 0.0f);
@@ -238,7 +238,7 @@ DRAPE_HOT_FUNCTION ActingContact loadRow(const Solve* solve, const uint index, c
 
 // Makes the row of a contact if it has none, and loads it.
 DRAPE_HOT_FUNCTION ActingContact openRow(const Solve* solve, const uint index, const SolveContact* contact,
-                                         const uint stage)
+                                         const uint phase)
 {
     if (!(contact->m_flags & DRAPE_CONTACT_MADE))
     {
@@ -246,7 +246,7 @@ DRAPE_HOT_FUNCTION ActingContact openRow(const Solve* solve, const uint index, c
         const SolveContact copy = *contact;
         makeActing(&view, index, &copy);
     }
-    return loadRow(solve, index, contact, stage);
+    return loadRow(solve, index, contact, phase);
 }
 
 // Pushes the nodes of a contact with an open row. Returns whether there was anything to do.
@@ -264,11 +264,11 @@ DRAPE_HOT_FUNCTION int pushContact(const Solve* solve, const uint index, const S
     for (uint k = 0; k < count; ++k)
         nodeAt(solve, contact->m_nodes[k])->m_displacement =
             vec3AddScaled(at.m_nodes[k], shift, acting->m_row.m_shares[k]);  // the inverse mass beside it stays
-    if (contact->m_pushing == sweep->m_stage) return 1;
+    if (contact->m_pushing == sweep->m_phase) return 1;
     for (uint k = 0; k < count; ++k)
         solve->m_states[contact->m_nodes[k]].m_shifted = 1;
     solve->m_acting[index].m_pushed = 1;
-    solve->m_sorted[index].m_pushing = sweep->m_stage;
+    solve->m_sorted[index].m_pushing = sweep->m_phase;
     return 1;
 }
 
@@ -277,7 +277,7 @@ DRAPE_HOT_FUNCTION int projectContact(const Solve* solve, const uint index, cons
                                       ActingContact* acting, Sweep* sweep)
 {
     if (!(acting->m_row.m_inverseMobility > 0.0f)) return 0;
-    if ((contact->m_flags & DRAPE_CONTACT_TURNS) && acting->m_stage != sweep->m_stage)
+    if ((contact->m_flags & DRAPE_CONTACT_TURNS) && acting->m_phase != sweep->m_phase)
     {
         const Displacements at = displacementsOf(solve, contact);
         const Vec3 way = rowWay(acting, DRAPE_CONTACT_COUNT(contact->m_flags), &at);
@@ -286,8 +286,8 @@ DRAPE_HOT_FUNCTION int projectContact(const Solve* solve, const uint index, cons
         {
             const Solve view = *solve;
             const SolveContact copy = *contact;
-            renew(&view, index, &copy, sweep->m_stage, sweep->m_passed);
-            *acting = loadRow(solve, index, contact, sweep->m_stage);
+            renew(&view, index, &copy, sweep->m_phase, sweep->m_passed);
+            *acting = loadRow(solve, index, contact, sweep->m_phase);
             if (!(acting->m_row.m_inverseMobility > 0.0f)) return 0;
         }
     }
@@ -297,7 +297,7 @@ DRAPE_HOT_FUNCTION int projectContact(const Solve* solve, const uint index, cons
 // Returns whether the contact is violated or pushes.
 DRAPE_HOT_FUNCTION int isDue(const Solve* solve, const SolveContact* contact, const Sweep* sweep)
 {
-    if (contact->m_pushing == sweep->m_stage) return 1;
+    if (contact->m_pushing == sweep->m_phase) return 1;
     const Displacements at = displacementsOf(solve, contact);
     return excessOf(contact, &at) + sweep->m_slack > 0.0f;
 }
@@ -347,7 +347,7 @@ DRAPE_HOT_FUNCTION uint visitSideBySide(const Solve* solve, const uint index, co
     if (isOpen)
     {
         contact = loadContact(solve, index);
-        hasRow = contact.m_pushing == sweep->m_stage;
+        hasRow = contact.m_pushing == sweep->m_phase;
         if (hasRow) acting = loadActing(solve, index);
     }
     for (;;)
@@ -369,7 +369,7 @@ DRAPE_HOT_FUNCTION uint visitSideBySide(const Solve* solve, const uint index, co
             {
                 if (rank == (mark & 0xffffu))
                 {
-                    if (!hasRow) acting = openRow(solve, index, &contact, sweep->m_stage);
+                    if (!hasRow) acting = openRow(solve, index, &contact, sweep->m_phase);
                     if (projectContact(solve, index, &contact, &acting, sweep) || hasRow)
                     {
                         rounds = before + 1;
@@ -384,14 +384,14 @@ DRAPE_HOT_FUNCTION uint visitSideBySide(const Solve* solve, const uint index, co
     }
 }
 
-// Visits contacts that were loaded, one for each work-item that has any, if they act in this stage. The group takes so
+// Visits contacts that were loaded, one for each work-item that has any, if they act in this phase. The group takes so
 // many rounds.
 DRAPE_HOT_FUNCTION void actSideBySide(const Solve* solve, const uint index, const int exists,
                                       const SolveContact* contact, const uint rounds, Sweep* sweep)
 {
     ActingContact acting;
     uint round = rounds;
-    if (exists && contact->m_pushing == sweep->m_stage)
+    if (exists && contact->m_pushing == sweep->m_phase)
     {
         acting = loadActing(solve, index);
         if (acting.m_row.m_inverseMobility > 0.0f) round = contact->m_rank >> 16;
@@ -403,7 +403,7 @@ DRAPE_HOT_FUNCTION void actSideBySide(const Solve* solve, const uint index, cons
     }
 }
 
-// Visits contacts one after the other: all, or those that act in this stage.
+// Visits contacts one after the other: all, or those that act in this phase.
 DRAPE_HOT_FUNCTION uint visitInOrder(const Solve* solve, const uint first, const uint last, Sweep* sweep,
                                      const int acts)
 {
@@ -411,17 +411,17 @@ DRAPE_HOT_FUNCTION uint visitInOrder(const Solve* solve, const uint first, const
     for (uint i = first; i < last; ++i)
     {
         const SolveContact contact = loadContact(solve, i);
-        if (acts ? contact.m_pushing != sweep->m_stage : !isDue(solve, &contact, sweep)) continue;
-        ActingContact acting = openRow(solve, i, &contact, sweep->m_stage);
+        if (acts ? contact.m_pushing != sweep->m_phase : !isDue(solve, &contact, sweep)) continue;
+        ActingContact acting = openRow(solve, i, &contact, sweep->m_phase);
         pushed |=
             acts ? pushContact(solve, i, &contact, &acting, sweep) : projectContact(solve, i, &contact, &acting, sweep);
     }
     return pushed;
 }
 
-// The record of a bucket's pushes: the stage in which a contact pushed last, and the rounds that its acting contacts
+// The record of a bucket's pushes: the phase in which a contact pushed last, and the rounds that its acting contacts
 // need.
-#define DRAPE_PUSH_RECORD(stage, rounds) ((stage) << 16 | (rounds))
+#define DRAPE_PUSH_RECORD(phase, rounds) ((phase) << 16 | (rounds))
 
 // Takes the group's buckets and their records of pushes into local memory, before the first sweep.
 DRAPE_HOT_FUNCTION void openBuckets(const Solve* solve)
@@ -453,27 +453,27 @@ DRAPE_HOT_FUNCTION void sweepBucket(const Solve* solve, const uint index, Sweep*
     }
 #endif
     // Most contacts find their rounds recorded: atomics on one word wait for each other.
-    const uint record = DRAPE_PUSH_RECORD(sweep->m_stage, rounds);
+    const uint record = DRAPE_PUSH_RECORD(sweep->m_phase, rounds);
     if (rounds > 0 && solve->m_shared[DRAPE_SHARED_PUSHED + index] < record)
         atomic_max(solve->m_shared + DRAPE_SHARED_PUSHED + index, record);
 }
 
-// Returns the next bucket, from `index` on, in which contacts act in this stage; the number of buckets if there is
+// Returns the next bucket, from `index` on, in which contacts act in this phase; the number of buckets if there is
 // none.
-DRAPE_HOT_FUNCTION uint nextActing(const Solve* solve, uint index, const uint count, const uint stage)
+DRAPE_HOT_FUNCTION uint nextActing(const Solve* solve, uint index, const uint count, const uint phase)
 {
-    while (index < count && solve->m_shared[DRAPE_SHARED_PUSHED + index] >> 16 != stage)
+    while (index < count && solve->m_shared[DRAPE_SHARED_PUSHED + index] >> 16 != phase)
         ++index;
     return index;
 }
 
-// Visits the contacts of all buckets that act in this stage. Loads each bucket's contacts while the one before it is
+// Visits the contacts of all buckets that act in this phase. Loads each bucket's contacts while the one before it is
 // visited.
 DRAPE_HOT_FUNCTION void sweepActing(const Solve* solve, const uint count, Sweep* sweep)
 {
-    uint index = nextActing(solve, 0, count, sweep->m_stage);
+    uint index = nextActing(solve, 0, count, sweep->m_phase);
 #ifdef DRAPE_CPU
-    for (; index < count; index = nextActing(solve, index + 1, count, sweep->m_stage))
+    for (; index < count; index = nextActing(solve, index + 1, count, sweep->m_phase))
         visitInOrder(solve, solve->m_shared[DRAPE_SHARED_FIRST + index], solve->m_shared[DRAPE_SHARED_LAST + index],
                      sweep, 1);
 #else
@@ -487,7 +487,7 @@ DRAPE_HOT_FUNCTION void sweepActing(const Solve* solve, const uint count, Sweep*
         const uint last = lasts[index], rounds = solve->m_shared[DRAPE_SHARED_PUSHED + index] & 0xffffu;
         uint own = firsts[index] + item;
         SolveContact contact = loaded;
-        index = nextActing(solve, index + 1, count, sweep->m_stage);
+        index = nextActing(solve, index + 1, count, sweep->m_phase);
         if (index < count && firsts[index] + item < lasts[index]) loaded = loadContact(solve, firsts[index] + item);
         actSideBySide(solve, own, own < last, &contact, rounds, sweep);
         for (own += width; own - item < last; own += width)
@@ -544,7 +544,7 @@ static int limitFeature(const Solve* solve, const uint first, const uint last)
         if (acting.m_pushed) limitSpeed(&acting, solve->m_states);
         near |= endsNear(solve, &acting);
         const int turns = (solve->m_sorted[i].m_flags & DRAPE_CONTACT_TURNS) != 0;
-        if (turns && acting.m_stage != 0 && !near) near |= turnedEndsNear(solve, i);
+        if (turns && acting.m_phase != 0 && !near) near |= turnedEndsNear(solve, i);
     }
     return near;
 }

@@ -196,10 +196,10 @@ float ContactGroup::projectBlock(const SweptCloth& cloth, std::size_t index, uns
         }
         ActingContact& acting = m_rows[std::size_t(at)].m_acting;
         if (!(acting.m_row.m_inverseMobility > 0)) continue;
-        if (acting.m_stage != m_stage && rowViolation(&acting.m_row, nodes, cloth.m_passed) > 0)
+        if (acting.m_phase != m_phase && rowViolation(&acting.m_row, nodes, cloth.m_passed) > 0)
         {
             renew(cloth, m_rows[std::size_t(at)], block, lane);
-            acting.m_stage = m_stage;
+            acting.m_phase = m_phase;
         }
         if (!(acting.m_row.m_inverseMobility > 0) || !project(cloth, acting, worst)) continue;
         pushing |= 1u << lane;
@@ -210,10 +210,10 @@ float ContactGroup::projectBlock(const SweptCloth& cloth, std::size_t index, uns
     return worst;
 }
 
-void ContactGroup::beginStage(unsigned stage)
+void ContactGroup::beginPhase(unsigned phase)
 {
-    if (m_stage == stage) return;
-    m_stage = stage;
+    if (m_phase == phase) return;
+    m_phase = phase;
     for (const std::size_t index : m_pushingBlocks)
     {
         for (int lane = 0; lane < kLanes; ++lane)
@@ -236,7 +236,7 @@ std::pair<std::size_t, std::size_t> ContactGroup::rangeOf(Kinds kinds) const
 
 float ContactGroup::sweep(const SweptCloth& cloth, Kinds kinds)
 {
-    beginStage(cloth.m_stage);
+    beginPhase(cloth.m_phase);
     const auto [first, last] = rangeOf(kinds);
     const Block* const blocks = m_blocks.data();
     const SolverNode* const nodes = cloth.nodes().nodes();
@@ -278,7 +278,7 @@ bool ContactGroup::endsNear(const SweptCloth& cloth, const Block& block, int lan
     const auto isNear = [&](const ActingContact& acting)
     { return acting.m_distance - rowViolation(&acting.m_row, cloth.nodes().nodes(), 1) < least; };
     if (isNear(row.m_acting)) return true;
-    if (!contactTurns(&block.m_contacts[lane]) || row.m_acting.m_stage == 0) return false;
+    if (!contactTurns(&block.m_contacts[lane]) || row.m_acting.m_phase == 0) return false;
     Row now = row;
     ContactPlane plane;
     return !turn(cloth, block, lane, 1, now, plane) || isNear(now.m_acting);

@@ -29,7 +29,7 @@ struct SweptCloth
     float m_passed = 1;      // share of the step that has passed
     float m_tolerated = 0;   // m, violation that a projection leaves
     int m_actingSweeps = 0;  // see ContactSweep::restart()
-    unsigned m_stage = 0;    // see ContactSweep::restart()
+    unsigned m_phase = 0;    // see ContactSweep::restart()
 
     SolverNodes& nodes() const { return m_contacts->m_nodes; }
     // Bound on how far levels lie above those at the step's end, m.
@@ -58,9 +58,9 @@ public:
         Edges
     };
     // Tests every contact of these features once and projects those that are due. Returns the worst violation met, m,
-    // as far as the contact's nodes can correct it. A new stage begins with no pushes.
+    // as far as the contact's nodes can correct it. A new phase begins with no pushes.
     float sweep(const SweptCloth& cloth, Kinds kinds);
-    // Projects the contacts that act in this stage m_actingSweeps times, in the order of sweeps.
+    // Projects the contacts that act in this phase m_actingSweeps times, in the order of sweeps.
     void sweepActing(const SweptCloth& cloth);
     // Removes from the nodes' velocities what a contact gained by recovering a depth that the step began with.
     void limitSpeeds(const SweptCloth& cloth, Kinds kinds) const;
@@ -110,7 +110,7 @@ private:
     template <int count>
     static Lanes excessOfNodes(const Block& block, const SolverNode* nodes, float slack);
     static bool project(const SweptCloth& cloth, ActingContact& acting, float& worst);
-    void beginStage(unsigned stage);
+    void beginPhase(unsigned phase);
     float projectBlock(const SweptCloth& cloth, std::size_t index, unsigned due);
 
     std::vector<const FeatureContacts*> m_features;
@@ -118,9 +118,9 @@ private:
     std::size_t m_nodeBlocks = 0;          // blocks of node features
     std::size_t m_faceBlocks = 0;          // blocks of node and face features
     std::vector<BlockRows> m_rowsOf;       // by block
-    std::vector<unsigned char> m_pushing;  // by block: a bit for each lane whose row has pushed in this stage
+    std::vector<unsigned char> m_pushing;  // by block: a bit for each lane whose row has pushed in this phase
     std::vector<Row> m_rows;
-    std::vector<std::size_t> m_pushingBlocks;  // blocks with rows that have pushed in this stage
-    unsigned m_stage = 0;                      // stage of the last sweep
+    std::vector<std::size_t> m_pushingBlocks;  // blocks with rows that have pushed in this phase
+    unsigned m_phase = 0;                      // phase of the last sweep
 };
 }  // namespace drape

@@ -35,14 +35,14 @@ public:
     void assign(const SolverCloth& cloth, const ContactSource& source);
     // Prepares the cloth once after assign(). SweepTeam::start() does the rest.
     void begin();
-    // Begins a stage, with no pushes. passed: the share of the step that has passed, up to 1; obstacles stand there.
+    // Begins a phase, with no pushes. passed: the share of the step that has passed, up to 1; obstacles stand there.
     // actingSweeps: after each sweep; 0 unless links are swept in turns with the contacts, which then share their loads
     // (kernels/lib/solver/contact_row.h). tolerated: m, violation that the sweeps leave.
     void restart(float passed, int actingSweeps = 0, float tolerated = 0)
     {
         m_cloth.m_tolerated = tolerated;
         m_cloth.m_actingSweeps = actingSweeps;
-        ++m_cloth.m_stage;
+        ++m_cloth.m_phase;
         m_cloth.m_passed = passed;
     }
 
