@@ -10,7 +10,7 @@ namespace drape
 // Runs Bullet's own solver for the body, in the floating-point environment of the app.
 void solveByBullet(btSoftBody& body);
 
-class BulletLinks : public ForeignLinks
+class BulletLinks : public CallersLinks
 {
 public:
     // Minimum iterations of Bullet for a body with contacts whose iterations can be run one by one. The error left by a

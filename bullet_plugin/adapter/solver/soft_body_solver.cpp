@@ -157,7 +157,7 @@ void SoftBodySolver::solveBodies(StepParts& parts)
     work.m_solved.assign(static_cast<std::size_t>(m_softBodySet.size()), 0);
     Stopwatch watch;
     work.takeSubsteps(m_softBodySet);
-    work.takeForeign(m_softBodySet);
+    work.takeBulletsBodies(m_softBodySet);
     parts.m_readMs += watch.lapMs();
     if (work.solveByBullet(m_softBodySet)) parts.m_bulletMs += watch.lapMs();
     // The host solves what the device has refused.

@@ -79,7 +79,7 @@ void SoftBodySolver::Work::takeSubsteps(const Bodies& bodies)
 }
 
 // Hands the bodies with a pair whose links Bullet solves to the solver.
-void SoftBodySolver::Work::takeForeign(const Bodies& bodies)
+void SoftBodySolver::Work::takeBulletsBodies(const Bodies& bodies)
 {
     m_bulletLinks.clear();
     for (int i = 0; i < bodies.size(); ++i)

@@ -73,7 +73,7 @@ struct SoftBodySolver::Work
     void beginSubsteps(const Bodies& bodies);
     void readPaths(const Bodies& bodies);
     void takeSubsteps(const Bodies& bodies);
-    void takeForeign(const Bodies& bodies);
+    void takeBulletsBodies(const Bodies& bodies);
     bool mayFollow() const;
     bool submitBehind(const Bodies& bodies, const ContactSource& source);
     bool solveByBullet(const Bodies& bodies);

@@ -11,10 +11,10 @@ struct KeptStep;
 
 // Links that the caller solves, one iteration at a time. Calls come from the thread of StepSolver::solve(), except
 // read() and write(), which may come from any thread for several cloths at once.
-class ForeignLinks
+class CallersLinks
 {
 public:
-    virtual ~ForeignLinks() = default;
+    virtual ~CallersLinks() = default;
     // Returns the number of iterations, at least 1.
     virtual int iterations() const = 0;
     virtual void solve(int iteration) = 0;
@@ -29,7 +29,7 @@ struct SolverCloth
 {
     ClothContacts* m_contacts = nullptr;
     Substeps* m_substeps = nullptr;
-    ForeignLinks* m_links = nullptr;
+    CallersLinks* m_links = nullptr;
     RigidRows* m_rigid = nullptr;      // with m_substeps alone; null if there are none
     const KeptStep* m_kept = nullptr;  // with m_substeps alone: the nodes are on the device, not in m_contacts
 };

@@ -164,8 +164,8 @@ void StepSolver::sweepInTurns()
 // Runs an iteration's limits and contact sweeps.
 void StepSolver::sweepContacts(int iteration)
 {
-    const auto isForeign = [](const ContactSweep* sweep) { return sweep->cloth().m_links != nullptr; };
-    select(m_iterating, m_turn, isForeign);
+    const auto isCallers = [](const ContactSweep* sweep) { return sweep->cloth().m_links != nullptr; };
+    select(m_iterating, m_turn, isCallers);
     const auto read = [](ContactSweep& sweep)
     {
         sweep.cloth().m_links->read(sweep.nodes());
@@ -186,7 +186,7 @@ void StepSolver::sweepContacts(int iteration)
     sweepInTurns();
     for (const ContactSweep* sweep : m_iterating)
         if (RigidRows* rigid = sweep->cloth().m_rigid) rigid->end();
-    select(m_iterating, m_turn, isForeign);
+    select(m_iterating, m_turn, isCallers);
     const auto write = [](ContactSweep& sweep)
     {
         addShifts(sweep.contacts());
@@ -199,7 +199,7 @@ void StepSolver::endIteration(int iteration)
 {
     forSubsteps([](SolverNodes& nodes, Substeps& substeps, ThreadTeam* threads) { substeps.end(nodes, threads); });
     for (const ContactSweep* sweep : m_iterating)
-        if (ForeignLinks* links = sweep->cloth().m_links) links->solve(iteration);
+        if (CallersLinks* links = sweep->cloth().m_links) links->solve(iteration);
 }
 
 void StepSolver::iterate()
@@ -261,7 +261,7 @@ void StepSolver::beginClosing()
 {
     const auto begin = [](ContactSweep& sweep)
     {
-        if (ForeignLinks* links = sweep.cloth().m_links) links->read(sweep.nodes());
+        if (CallersLinks* links = sweep.cloth().m_links) links->read(sweep.nodes());
         rememberAll(sweep.nodes());
     };
     m_team.forCloths(m_all, begin);
@@ -292,7 +292,7 @@ void StepSolver::close()
         sweep->contacts().m_mayHavePassed = SweepTeam::mayHavePassed(*sweep);
     const auto end = [](ContactSweep& sweep)
     {
-        if (ForeignLinks* links = sweep.cloth().m_links) links->write(sweep.nodes());
+        if (CallersLinks* links = sweep.cloth().m_links) links->write(sweep.nodes());
     };
     m_team.forCloths(m_all, end);
 }

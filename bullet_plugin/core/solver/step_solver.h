@@ -58,7 +58,7 @@ class StepSolver
 public:
     explicit StepSolver(ThreadTeam& threads) : m_team(threads), m_threads(threads) {}
 
-    // Solves the cloths and marks them as solved. Cloths with ForeignLinks are written back; nodes of others stay where
+    // Solves the cloths and marks them as solved. Cloths with CallersLinks are written back; nodes of others stay where
     // the solver leaves them. free: cloths without contacts, limits or rigid rows. stage: solves the cloths that fit
     // (PackedStep); null if there is none. If the device fails, the host solves them all. Returns the number of cloths
     // that the device solved.
