@@ -30,7 +30,7 @@ typedef struct NodePath
 {
     Vec3 m_start;         // m
     float m_inverseMass;  // 1/kg, as contacts see it: 0 for a node that they do not move
-    Vec3 m_way;           // m, from the start to the end
+    Vec3 m_vector;        // m, from the start to the end
     float m_freeMass;     // 1/kg, the inverse mass as links see it
 } NodePath;
 

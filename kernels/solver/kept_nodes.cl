@@ -9,7 +9,7 @@ typedef struct Predicted
     Vec3 m_acceleration;  // m/s²
     Vec3 m_free;          // m, the end by Bullet's prediction
     Vec3 m_end;           // m, by that of substeps
-    Vec3 m_way;           // m, to it, without the rounding of positions
+    Vec3 m_vector;        // m, to it, without the rounding of positions
 } Predicted;
 
 static Predicted predict(__global const KeptCloth* cloth, const KeptNode* node)
@@ -23,7 +23,7 @@ static Predicted predict(__global const KeptCloth* cloth, const KeptNode* node)
     const Vec3 shift = vec3Scale(predicted.m_acceleration, cloth->m_shift);
     predicted.m_free = vec3Add(node->m_position, moved);
     predicted.m_end = vec3Add(predicted.m_free, shift);
-    predicted.m_way = vec3Add(moved, shift);
+    predicted.m_vector = vec3Add(moved, shift);
     return predicted;
 }
 
@@ -61,7 +61,7 @@ __kernel void takeKeptPaths(DRAPE_SOLVE_KEPT)
         const Predicted predicted = predict(cloth, &node);
         NodePath path;
         path.m_start = node.m_position;
-        path.m_way = predicted.m_way;
+        path.m_vector = predicted.m_vector;
         path.m_inverseMass = path.m_freeMass = node.m_inverseMass;
         paths[i] = path;
         accelerations[i] = predicted.m_acceleration;
@@ -106,7 +106,7 @@ __kernel void keepNodes(DRAPE_SOLVE_KEPT, DRAPE_UPDATES(KeptBounds, bounds))
     for (uint i = get_global_id(0) % launch.m_lanes; i < cloth->m_count; i += launch.m_lanes)
     {
         const NodePath path = paths[i];
-        const Vec3 displacement = ends[i].m_displacement, off = vec3Sub(displacement, path.m_way);
+        const Vec3 displacement = ends[i].m_displacement, off = vec3Sub(displacement, path.m_vector);
         KeptNode node;
         node.m_position = vec3Add(path.m_start, displacement);
         node.m_inverseMass = path.m_freeMass;

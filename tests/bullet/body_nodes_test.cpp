@@ -47,8 +47,8 @@ TEST(BodyNodes, PathsLeadFromTheStepsStartToTheCurrentPosition)
     expectEqual(nodes.start(1), vec3(-4, 5, 6));
     for (std::size_t i = 0; i < 2; ++i)
     {
-        expectEqual(nodes.way(i), vec3(0, -0.25f, 0.125f));
-        expectEqual(nodes.displacement(i), nodes.way(i));
+        expectEqual(nodes.pathVector(i), vec3(0, -0.25f, 0.125f));
+        expectEqual(nodes.displacement(i), nodes.pathVector(i));
         expectEqual(nodes.velocity(i), vec3(1, float(2 + i), 3));
         EXPECT_FALSE(nodes.isShifted(i));
     }
@@ -76,8 +76,8 @@ TEST(BodyNodes, RecordEndKeepsTheStartOfThePath)
     node.m_v.setValue(0, 0, 7);
     recordEnd(node, 0, nodes);
     expectEqual(nodes.start(0), vec3(1024, 2, 3));
-    expectEqual(nodes.way(0), vec3(0, -1, 1));
-    expectEqual(nodes.displacement(0), nodes.way(0));
+    expectEqual(nodes.pathVector(0), vec3(0, -1, 1));
+    expectEqual(nodes.displacement(0), nodes.pathVector(0));
     expectEqual(nodes.velocity(0), vec3(0, 0, 7));
     EXPECT_EQ(nodes.inverseMass(0), 2);
     EXPECT_FALSE(nodes.isShifted(0));

@@ -53,7 +53,7 @@ void expectNear(Vec3 is, Vec3 expected)
 void expectUncut(const SolverNodes& nodes, std::size_t node)
 {
     EXPECT_FALSE(nodes.isShifted(node)) << "node " << node;
-    EXPECT_EQ(nodes.displacement(node).y, nodes.way(node).y) << "node " << node;
+    EXPECT_EQ(nodes.displacement(node).y, nodes.pathVector(node).y) << "node " << node;
     EXPECT_EQ(nodes.velocity(node).y, -2 * kPerSecond) << "node " << node;
 }
 
@@ -63,7 +63,7 @@ void expectCut(const SolverNodes& nodes, std::size_t node, float height)
     EXPECT_TRUE(nodes.isShifted(node)) << "node " << node;
     expectNear(nodes.position(node), vec3(float(node), height, 0));
     EXPECT_NEAR(nodes.velocity(node).y, (height - 1) * kPerSecond, 1e-4f) << "node " << node;
-    EXPECT_EQ(nodes.way(node).y, -2) << "the path itself stays";
+    EXPECT_EQ(nodes.pathVector(node).y, -2) << "the path itself stays";
 }
 }  // namespace
 
@@ -118,7 +118,7 @@ TEST(ImpactCut, PinnedNodesStay)
     for (const Cut cut : {Cut::EachNode, Cut::WholeBody})
     {
         SolverNodes nodes = fallingNodes(3);
-        nodes.setPath(1, nodes.start(1), nodes.way(1), nodes.velocity(1), 0);
+        nodes.setPath(1, nodes.start(1), nodes.pathVector(1), nodes.velocity(1), 0);
         EXPECT_TRUE(cutAtImpacts(nodes, {planeContact({0, 1, 2}, 0)}, cut, kPerSecond));
         expectCut(nodes, 0, kStandOff);
         expectUncut(nodes, 1);

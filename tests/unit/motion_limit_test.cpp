@@ -58,7 +58,7 @@ struct OffPath
         for (std::size_t i = 0; i < kNodes; ++i)
         {
             if (hasContact(i)) m_limit.addContactNode(int(i));
-            m_pulled.push_back(vec3Add(m_nodes.way(i), vector(0.04f)));
+            m_pulled.push_back(vec3Add(m_nodes.pathVector(i), vector(0.04f)));
         }
         m_pulled[kNotANumber].x = std::numeric_limits<float>::quiet_NaN();
         for (std::size_t i = 0; i < kNodes; ++i)

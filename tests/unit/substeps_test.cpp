@@ -76,13 +76,13 @@ TEST(SolverNodes, ANodeIsAtTheEndOfItsPathUntilItIsMoved)
     nodes.shift(1, shift);
     EXPECT_TRUE(nodes.isShifted(1));
     expectEqual(nodes.position(1), vec3Add(nodes.end(1), shift));
-    expectEqual(nodes.way(1), way);
+    expectEqual(nodes.pathVector(1), way);
     nodes.addShift(1, 8);
     expectEqual(nodes.velocity(1), vec3(4, 6, 6));
     nodes.setEnd(1, nodes.displacement(1), vec3(0, 0, 0));
     EXPECT_FALSE(nodes.isShifted(1));
     expectEqual(nodes.start(1), start);
-    expectEqual(nodes.way(1), vec3Add(way, shift));
+    expectEqual(nodes.pathVector(1), vec3Add(way, shift));
     nodes.addShift(1, 8);  // without effect: the node was not shifted
     expectEqual(nodes.velocity(1), vec3(0, 0, 0));
 }

@@ -81,7 +81,7 @@ struct Box
     }
 };
 
-// Tells whether the triangle is wound clockwise where one looks at it from above.
+// Returns whether the triangle is wound clockwise where one looks at it from above.
 bool facesDown(const std::vector<float>& positions, const std::int32_t* triangle)
 {
     const float* corners[3];

@@ -234,7 +234,7 @@ void PairStarts::check(const StartingPair& pair, const std::vector<int>& jumped,
     if (!mayMeet(pair, guard)) return;
     MeshProbe& probe = *probeOf(pair);
     guard.m_intersections = findMeeting(pair, probe);
-    if (guard.m_intersections == 0 && !isInsideOnItsWay(pair, probe, guard))
+    if (guard.m_intersections == 0 && !isInsideOnItsPath(pair, probe, guard))
     {
         guard.m_pushedSteps = guard.m_passingSteps = guard.m_backSteps = guard.m_outSteps = 0;
         guard.m_keptNode = -1;

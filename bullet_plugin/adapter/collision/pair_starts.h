@@ -108,9 +108,9 @@ private:
     int largestPart(const TangledPair& tangled, std::size_t& count) const;
     void pushToSurface(const StartingPair& pair, const MeshProbe& probe, BodyContacts& body);
     void drawBack(const StartingPair& pair, const MeshProbe& probe, int keptNode, BodyContacts& body);
-    bool isInsideOnItsWay(const StartingPair& pair, const MeshProbe& probe, const Guard& guard);
+    bool isInsideOnItsPath(const StartingPair& pair, const MeshProbe& probe, const Guard& guard);
     void moveOut(const StartingPair& pair, const MeshProbe& probe, Guard& guard, BodyContacts& body);
-    void pushNode(const StartingPair& pair, int node, Vec3 way, BodyContacts& body) const;
+    void pushNode(const StartingPair& pair, int node, Vec3 displacement, BodyContacts& body) const;
     void pushFaces(const StartingPair& pair, const MeshProbe& probe, BodyContacts& body);
 
     PluginState& m_state;

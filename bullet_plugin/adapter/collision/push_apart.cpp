@@ -17,11 +17,11 @@ namespace
 constexpr btScalar kLeastSpeed = btScalar(0.5);
 constexpr btScalar kSpeedPerMetre = 2;
 
-// Maximum steps with nodes on the wrong side before a way out other than to the nearest surface is taken.
+// Maximum steps with nodes on the wrong side before a direction other than to the nearest surface is taken.
 constexpr int kMostPushedSteps = 240;
 
 // Maximum steps in which faces may pass through an obstacle between nodes that are all on the right side, before
-// another way out is taken. Parts that can come out over an edge or a corner have done so by then.
+// another direction is taken. Parts that can come out over an edge or a corner have done so by then.
 constexpr int kPassingSteps = 30;
 
 // Maximum steps for which parts of a cloth are drawn back, and for which all of it is moved out; the second where
@@ -97,10 +97,10 @@ void PairStarts::findRegions(const ClothFaces& faces, const MeshProbe& probe)
         wrong = !wrong;
 }
 
-// way: displacement to the surface point where the node comes out, in the frame of the obstacle's positions.
-void PairStarts::pushNode(const StartingPair& pair, int node, Vec3 way, BodyContacts& body) const
+// displacement: to the surface point where the node comes out, in the frame of the obstacle's positions.
+void PairStarts::pushNode(const StartingPair& pair, int node, Vec3 displacement, BodyContacts& body) const
 {
-    const btVector3 there = vectorOf(way);
+    const btVector3 there = vectorOf(displacement);
     const btScalar depth = there.length();
     if (!(depth > 0) || !(movableInverseMass(body.m_body->m_nodes[node]) > 0)) return;
     NodePush push;
@@ -127,9 +127,9 @@ void PairStarts::pushFaces(const StartingPair& pair, const MeshProbe& probe, Bod
         Vec3 middle;
         if (!probe.middleOfMeeting(corners, meeting.m_triangles, middle)) continue;
         if (probe.isInside(middle) == m_insideIsRight) continue;
-        const Vec3 way = vec3Sub(probe.nearest(middle), middle);
+        const Vec3 displacement = vec3Sub(probe.nearest(middle), middle);
         for (int k = 0; k < (nodes[1] == nodes[2] ? 2 : 3); ++k)
-            pushNode(pair, nodes[k], way, body);
+            pushNode(pair, nodes[k], displacement, body);
     }
 }
 
@@ -166,8 +166,8 @@ int PairStarts::largestPart(const TangledPair& tangled, std::size_t& count) cons
     return largest == sizes.end() ? -1 : largest->first;
 }
 
-// Collects nodes of faces that reach from the kept region into the obstacle or through it, each with its way back:
-// out of the surface on the kept side.
+// Collects nodes of faces that reach from the kept region into the obstacle or through it, each with its direction
+// back: out of the surface on the kept side.
 PairStarts::Row PairStarts::firstRow(const ClothFaces& faces, const MeshProbe& probe, int kept) const
 {
     Row row;
@@ -177,15 +177,15 @@ PairStarts::Row PairStarts::firstRow(const ClothFaces& faces, const MeshProbe& p
         const auto isKept = [&](std::int32_t node) { return m_regions[std::size_t(node)] == kept; };
         const std::int32_t* const from = std::find_if(nodes, nodes + 3, isKept);
         if (from == nodes + 3) continue;
-        const Vec3 way = probe.sumOfNormals(meeting.m_triangles, m_places[std::size_t(*from)]);
+        const Vec3 outward = probe.sumOfNormals(meeting.m_triangles, m_places[std::size_t(*from)]);
         for (int k = 0; k < 3; ++k)
             if (!isKept(nodes[k]))
-                row.emplace(nodes[k], btVector3(0, 0, 0)).first->second += btVector3(way.x, way.y, way.z);
+                row.emplace(nodes[k], btVector3(0, 0, 0)).first->second += btVector3(outward.x, outward.y, outward.z);
     }
     return row;
 }
 
-// Collects the nodes beside a row that are neither kept nor drawn yet. They move in the same way.
+// Collects the nodes beside a row that are neither kept nor drawn yet. They move in the same direction.
 PairStarts::Row PairStarts::nextRow(const ClothFaces& faces, const Row& row, const Row& drawn, int kept) const
 {
     Row next;
@@ -233,7 +233,7 @@ void PairStarts::moveOut(const StartingPair& pair, const MeshProbe& probe, Guard
     }
 }
 
-// Pushes in the current way. Returns false if no way is left.
+// Pushes in the current direction. Returns false if none is left.
 bool PairStarts::push(const StartingPair& pair, const MeshProbe& probe, const TangledPair& tangled, Guard& guard,
                       BodyContacts& body)
 {
@@ -285,7 +285,7 @@ void PairStarts::pushApart(const StartingPair& pair, const MeshProbe& probe, Gua
 }
 
 // Returns whether a cloth that is moved out, and meets nothing any more, still has nodes on the wrong side.
-bool PairStarts::isInsideOnItsWay(const StartingPair& pair, const MeshProbe& probe, const Guard& guard)
+bool PairStarts::isInsideOnItsPath(const StartingPair& pair, const MeshProbe& probe, const Guard& guard)
 {
     if (guard.m_outSteps == 0 || guard.m_outSteps >= kOutSteps) return false;
     findRegions(pair.m_cloth->faces(), probe);

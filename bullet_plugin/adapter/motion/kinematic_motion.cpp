@@ -26,7 +26,7 @@ constexpr btScalar kShiftNoise = btScalar(1e-4);
 // Maximum poses between two steps that count as one motion, for frames faster than steps, and the minimum cosine
 // between that motion and the velocity.
 constexpr btScalar kMostPoses = 16;
-constexpr btScalar kSameWay = btScalar(0.7);
+constexpr btScalar kSameDirection = btScalar(0.7);
 
 struct Turn
 {
@@ -77,7 +77,7 @@ bool isNear(const btTransform& from, const btTransform& to, const btVector3& vel
 {
     const btVector3 shift = to.getOrigin() - from.getOrigin();
     const btScalar farthest = kMostPoses * velocity.length() * dt, most = kMostPoses * angularVelocity.length() * dt;
-    if (shift.length() > kShiftNoise && shift.dot(velocity) < kSameWay * shift.length() * velocity.length())
+    if (shift.length() > kShiftNoise && shift.dot(velocity) < kSameDirection * shift.length() * velocity.length())
         return false;
     return shift.length() <= farthest + kShiftNoise && turnBetween(from, to).m_angle <= most + kMostPoses * kAngleNoise;
 }

@@ -64,16 +64,16 @@ void widen(btSoftBody& body, const Extent& extent, btScalar reach)
 }
 
 // Extents of a body's nodes at the start and the end of a step, without nodes that are not finite.
-struct Way
+struct BodyPath
 {
-    Way() = default;
+    BodyPath() = default;
     // threads: null for the caller alone.
-    Way(const btSoftBody& body, ThreadTeam* threads)
+    BodyPath(const btSoftBody& body, ThreadTeam* threads)
     {
         std::mutex mutex;
         const auto read = [&](std::size_t first, std::size_t last)
         {
-            Way part;
+            BodyPath part;
             for (std::size_t i = first; i < last; ++i)
             {
                 const btSoftBody::Node& node = body.m_nodes[static_cast<int>(i)];
@@ -89,7 +89,7 @@ struct Way
     }
 
     // The extents of a body on the device.
-    explicit Way(const KeptBoxes& boxes)
+    explicit BodyPath(const KeptBoxes& boxes)
     {
         const auto toExtent = [&](int box)
         {
@@ -104,9 +104,9 @@ struct Way
         m_start = toExtent(0);
         m_end = toExtent(2);
     }
-    static Way of(const PluginState& state, const btSoftBody& body, ThreadTeam* threads)
+    static BodyPath of(const PluginState& state, const btSoftBody& body, ThreadTeam* threads)
     {
-        return state.m_kept.isOnDevice(body) ? Way(state.m_kept.boxesOf(body)) : Way(body, threads);
+        return state.m_kept.isOnDevice(body) ? BodyPath(state.m_kept.boxesOf(body)) : BodyPath(body, threads);
     }
 
     // The paths as an obstacle sees them beside its bounds: those of its own pose, which the motion may not have
@@ -210,12 +210,13 @@ private:
     const btScalar m_activation;
     const bool m_resting;
 };
-void coverMotion(const PluginState& state, btSoftBody& body, const Way& way, const std::vector<StepObstacle>& obstacles)
+void coverMotion(const PluginState& state, btSoftBody& body, const BodyPath& bodyPath,
+                 const std::vector<StepObstacle>& obstacles)
 {
-    if (way.m_end.empty()) return;
-    Extent path = way.m_start;
-    path.add(way.m_end.m_low);
-    path.add(way.m_end.m_high);
+    if (bodyPath.m_end.empty()) return;
+    Extent path = bodyPath.m_start;
+    path.add(bodyPath.m_end.m_low);
+    path.add(bodyPath.m_end.m_high);
     if (!finite(body.m_bounds[0]) || !finite(body.m_bounds[1]))
     {
         body.m_bounds[0] = path.m_low;
@@ -225,7 +226,7 @@ void coverMotion(const PluginState& state, btSoftBody& body, const Way& way, con
     for (const StepObstacle& obstacle : obstacles)
     {
         const btScalar reach = own + obstacle.m_reach;
-        const Extent seen = obstacle.m_motion.moves() ? way.seenBy(obstacle) : path;
+        const Extent seen = obstacle.m_motion.moves() ? bodyPath.seenBy(obstacle) : path;
         const btScalar nearness = reach + kNearThresholds * gContactBreakingThreshold;
         const bool mayArrive = obstacle.m_change > 0 && path.meets(obstacle, reach + 2 * obstacle.m_change);
         if (!path.meets(obstacle, nearness) && !seen.meets(obstacle, nearness) && !mayArrive) continue;
@@ -261,7 +262,7 @@ bool isReached(const PluginState& state, const btSoftBody& body, const std::vect
 {
     const auto isActive = [](const StepObstacle& obstacle) { return obstacle.isActive(); };
     if (std::none_of(obstacles.begin(), obstacles.end(), isActive)) return false;
-    Way rest = Way::of(state, body, nullptr);
+    BodyPath rest = BodyPath::of(state, body, nullptr);
     (state.m_kept.isOnDevice(body) ? rest.m_end : rest.m_start) =
         state.m_kept.isOnDevice(body) ? rest.m_start : rest.m_end;  // the last step that it was awake in is over
     if (rest.m_end.empty()) return false;
@@ -282,11 +283,11 @@ void coverMotions(const PluginState& state, const std::vector<btSoftBody*>& bodi
     if (obstacles.empty()) return;
     const auto sizeOf = [&](std::size_t i)
     { return bodies[i]->isActive() ? static_cast<std::size_t>(bodies[i]->m_nodes.size()) : 0; };
-    std::vector<Way> ways(bodies.size());
+    std::vector<BodyPath> paths(bodies.size());
     forBodies(bodies.size(), threads, sizeOf,
-              [&](std::size_t i, ThreadTeam* team) { ways[i] = Way::of(state, *bodies[i], team); });
+              [&](std::size_t i, ThreadTeam* team) { paths[i] = BodyPath::of(state, *bodies[i], team); });
     // Filters of the app are called on this thread alone.
     for (std::size_t i = 0; i < bodies.size(); ++i)
-        if (bodies[i]->isActive()) coverMotion(state, *bodies[i], ways[i], obstacles);
+        if (bodies[i]->isActive()) coverMotion(state, *bodies[i], paths[i], obstacles);
 }
 }  // namespace drape

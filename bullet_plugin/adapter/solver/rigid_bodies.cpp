@@ -94,7 +94,7 @@ void RigidBodies::addRows(const btSoftBody& body, const SolverNodes& nodes, Rigi
         const float advance = dt * vec3Dot(plane.m_normal, rigidVelocity(&m_bodies[row.m_body], row.m_arm));
         plane.m_gap = float(contact.m_cti.m_normal.dot(start) + contact.m_cti.m_offset) + advance;
         // Bullet's contacts act on approaching nodes alone. Beside edges of a mesh their normals may lead inwards.
-        const bool leaves = vec3Dot(plane.m_normal, nodes.way(row.m_node)) > advance;
+        const bool leaves = vec3Dot(plane.m_normal, nodes.pathVector(row.m_node)) > advance;
         plane.m_recover =
             plane.m_gap < 0 && !leaves ? targetGap(plane.m_gap, float(contact.m_c4), margin) - plane.m_gap : 0.0f;
         plane.m_friction = float(body.m_cfg.kDF * object.getFriction());

@@ -36,7 +36,7 @@ void holdStill(btSoftBody& body, const BodyContacts* contacts)
         btSoftBody::Node& node = body.m_nodes[static_cast<int>(i)];
         if (nodes)
         {
-            node.m_v = vectorOf(nodes->way(i)) * body.m_sst.isdt;
+            node.m_v = vectorOf(nodes->pathVector(i)) * body.m_sst.isdt;
             node.m_q = vectorOf(nodes->start(i));
         }
         if (node.m_im > 0) node.m_v -= fall;

@@ -261,8 +261,9 @@ void SubstepBody::readPaths(const btSoftBody& body, ClothContacts* recorded, Thr
         {
             const btSoftBody::Node& node = body.m_nodes[static_cast<int>(i)];
             if (!recorded) recordPath(node, i, nodes);
-            // The prediction's way is more precise than the difference of two positions.
-            if (node.m_x == m_predictions[i].m_end) nodes.setEnd(i, vec3Of(m_predictions[i].m_way), nodes.velocity(i));
+            // The prediction's vector is more precise than the difference of two positions.
+            if (node.m_x == m_predictions[i].m_end)
+                nodes.setEnd(i, vec3Of(m_predictions[i].m_vector), nodes.velocity(i));
         }
     };
     forRanges(nodes.count(), threads, read);

@@ -31,7 +31,7 @@ public:
     // too. Reads the links. threads: null for the caller alone.
     bool canSolveNow(const btSoftBody& body, ThreadTeam* threads);
 
-    // Tells that Bullet solved the step before.
+    // Records that Bullet solved the step before.
     void changeOver() { m_substeps.changeOver(); }
     // Makes room for a step of the body. A body that sleeps needs none.
     void reserve(const btSoftBody& body);
@@ -77,10 +77,10 @@ public:
 private:
     static constexpr int kLeastSubsteps = 2;
 
-    // The predicted end of a node, m, and the way to it without the rounding of positions.
+    // The predicted end of a node, m, and the vector to it without the rounding of positions.
     struct Prediction
     {
-        btVector3 m_end, m_way;
+        btVector3 m_end, m_vector;
     };
 
     // A link as Bullet has it: its nodes' indices, Bullet's m_c0 and m_c1, and the stiffness of its material.

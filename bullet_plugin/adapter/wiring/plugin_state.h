@@ -91,7 +91,7 @@ public:
     bool steps(const btSoftBody& body) const;
     // Returns the state of the node tree of a body that the solver steps; null if it is not listed.
     NodeTree* nodeTreeOf(const btSoftBodySolver* solver, const btSoftBody& body);
-    // Tells that the body's nodes have moved.
+    // Records that the body's nodes have moved.
     void leaveNodeTree(const btSoftBody& body);
     // Brings the body's node tree up to date if a step of Drape left it behind. Allocates no memory.
     void updateNodeTree(btSoftBody& body);

@@ -66,13 +66,13 @@ private:
         return vec3Sub(end, moves ? mapPoint(m_maps[slot].m_map, start) : start);
     }
 
-    // Returns whether the way leads away from the front of every face at the feature. From the front, such a way meets
-    // none of them.
-    static bool leaves(const NormalCone& cone, Vec3 way)
+    // Returns whether the path leads away from the front of every face at the feature. From the front, such a path
+    // meets none of them.
+    static bool leaves(const NormalCone& cone, Vec3 path)
     {
         if (!(cone.m_cosine > 0)) return false;
         const float sine = std::sqrt(std::max(0.0f, 1 - cone.m_cosine * cone.m_cosine));
-        return vec3Dot(cone.m_axis, way) > sine * vec3Length(way);
+        return vec3Dot(cone.m_axis, path) > sine * vec3Length(path);
     }
 
     const Scene& m_scene;

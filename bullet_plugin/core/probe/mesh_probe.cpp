@@ -56,14 +56,14 @@ bool passes(Vec3 p, Vec3 q, const Vec3 face[3], std::array<double, 3>& place)
     const auto minus = [](Vec3 a, Vec3 b) {
         return std::array<double, 3>{double(a.x) - b.x, double(a.y) - b.y, double(a.z) - b.z};
     };
-    const std::array<double, 3> ab = minus(face[1], face[0]), ac = minus(face[2], face[0]), way = minus(q, p),
+    const std::array<double, 3> ab = minus(face[1], face[0]), ac = minus(face[2], face[0]), pq = minus(q, p),
                                 ap = minus(p, face[0]);
     const std::array<double, 3> n = {ab[1] * ac[2] - ab[2] * ac[1], ab[2] * ac[0] - ab[0] * ac[2],
                                      ab[0] * ac[1] - ab[1] * ac[0]};
-    const double rate = n[0] * way[0] + n[1] * way[1] + n[2] * way[2];
+    const double rate = n[0] * pq[0] + n[1] * pq[1] + n[2] * pq[2];
     if (rate == 0) return false;
     const double t = std::min(1.0, std::max(0.0, -(n[0] * ap[0] + n[1] * ap[1] + n[2] * ap[2]) / rate));
-    place = {p.x + t * way[0], p.y + t * way[1], p.z + t * way[2]};
+    place = {p.x + t * pq[0], p.y + t * pq[1], p.z + t * pq[2]};
     return true;
 }
 

@@ -146,9 +146,9 @@ Vec3 MeshProbe::wayOutOfBox(const std::vector<Vec3>& points) const
         }
         for (const float sign : {1.0f, -1.0f})
         {
-            const float way = sign > 0 ? root.m_high[axis] - low : high - root.m_low[axis];
-            if (!(way < least)) continue;
-            least = way;
+            const float distance = sign > 0 ? root.m_high[axis] - low : high - root.m_low[axis];
+            if (!(distance < least)) continue;
+            least = distance;
             best = vec3(0, 0, 0);
             at(best, axis) = sign;
         }

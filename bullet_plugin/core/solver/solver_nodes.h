@@ -24,21 +24,21 @@ public:
         m_states.resize(count);
     }
 
-    // Records the node's path and puts the node at its end. start, way: m. velocity: m/s. inverseMass: 1/kg, 0 for a
+    // Records the node's path and puts the node at its end. start, vector: m. velocity: m/s. inverseMass: 1/kg, 0 for a
     // node that constraints do not move. anchored: links and anchors alone move the node, contacts do not.
-    void setPath(std::size_t node, Vec3 start, Vec3 way, Vec3 velocity, float inverseMass, bool anchored = false)
+    void setPath(std::size_t node, Vec3 start, Vec3 vector, Vec3 velocity, float inverseMass, bool anchored = false)
     {
         m_nodes[node].m_inverseMass = inverseMass;
         m_paths[node].m_start = start;
         m_paths[node].m_freeMass = inverseMass;
         m_paths[node].m_inverseMass = anchored ? 0.0f : inverseMass;
-        setEnd(node, way, velocity);
+        setEnd(node, vector, velocity);
     }
     // Records another end of the path.
-    void setEnd(std::size_t node, Vec3 way, Vec3 velocity)
+    void setEnd(std::size_t node, Vec3 vector, Vec3 velocity)
     {
-        m_paths[node].m_way = way;
-        setCurrent(node, way, velocity);
+        m_paths[node].m_vector = vector;
+        setCurrent(node, vector, velocity);
         m_states[node].m_shifted = 0;
     }
     // Puts the node elsewhere, with the same path.
@@ -54,8 +54,8 @@ public:
     NodeState* states() { return m_states.data(); }
     Vec3 start(std::size_t node) const { return m_paths[node].m_start; }
     // The path, from the start to the end.
-    Vec3 way(std::size_t node) const { return m_paths[node].m_way; }
-    Vec3 end(std::size_t node) const { return vec3Add(start(node), way(node)); }
+    Vec3 pathVector(std::size_t node) const { return m_paths[node].m_vector; }
+    Vec3 end(std::size_t node) const { return vec3Add(start(node), pathVector(node)); }
     Vec3 displacement(std::size_t node) const { return m_nodes[node].m_displacement; }
     Vec3 position(std::size_t node) const { return vec3Add(start(node), displacement(node)); }
     Vec3 velocity(std::size_t node) const { return m_states[node].m_velocity; }

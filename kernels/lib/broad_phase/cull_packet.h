@@ -33,8 +33,8 @@ DRAPE_FUNCTION PacketMotion packetMotion(const LanesVec3* p, LanesVec3 e0, Lanes
     motion.m_moved = lanesSplat(0.0f);
     for (int k = 0; k < 3 && mode != DRAPE_DISCRETE; ++k)
     {
-        const LanesVec3 way = lanesSub(p[3 + k], p[k]);
-        motion.m_moved = lanesMax(motion.m_moved, lanesDot(way, way));
+        const LanesVec3 displacement = lanesSub(p[3 + k], p[k]);
+        motion.m_moved = lanesMax(motion.m_moved, lanesDot(displacement, displacement));
     }
     const Lanes small = 0.9f * radius - 2e-5f * (lanesNorm1(e0) + lanesNorm1(e1));
     const LaneMask automatic = lanesMaskSplat(mode == DRAPE_AUTOMATIC);
@@ -82,8 +82,8 @@ DRAPE_FUNCTION LaneMask cullVolumes(CullVolumes* cull, LanesVec3* p, Lanes radiu
                                     const DRAPE_GLOBAL ObstacleMotion* motion)
 {
     const LanesVec3 e0 = lanesSub(p[4], p[3]), e1 = lanesSub(p[5], p[3]), e2 = lanesSub(p[5], p[4]);
-    const PacketMotion way = packetMotion(p, e0, e1, radius, mode);
-    const LaneMask stays = way.m_stays;
+    const PacketMotion packet = packetMotion(p, e0, e1, radius, mode);
+    const LaneMask stays = packet.m_stays;
     Lanes farthest = lanesSplat(0.0f);
     for (int k = 0; k < 3; ++k)
     {
@@ -97,7 +97,7 @@ DRAPE_FUNCTION LaneMask cullVolumes(CullVolumes* cull, LanesVec3* p, Lanes radiu
     const Lanes length = lanesSqrt(lanesDot(area, area));
     const LaneMask sure =
         whole & (length > DRAPE_CULL_THIN * longest) & (length >= DRAPE_CULL_SMALL * radius * lanesSqrt(longest));
-    const Lanes unswept = lanesSelect(stays, lanesSqrt(way.m_moved), lanesSplat(0.0f));
+    const Lanes unswept = lanesSelect(stays, lanesSqrt(packet.m_moved), lanesSplat(0.0f));
     cull->m_radius = radius;
     cull->m_least = lanesSelect(sure, unswept + DRAPE_CULL_MET * radius, radius);
 

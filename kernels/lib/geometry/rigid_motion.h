@@ -53,8 +53,8 @@ DRAPE_FUNCTION int isSwept(const Vec3* p, float radius, DRAPE_UINT mode)
     const float near = 0.9f * radius - 2e-5f * (vec3Norm1(vec3Sub(p[4], p[3])) + vec3Norm1(vec3Sub(p[5], p[3])));
     for (int k = 0; k < 3; ++k)
     {
-        const Vec3 way = vec3Sub(p[3 + k], p[k]);
-        if (!(vec3Dot(way, way) <= near * near)) return 1;
+        const Vec3 displacement = vec3Sub(p[3 + k], p[k]);
+        if (!(vec3Dot(displacement, displacement) <= near * near)) return 1;
     }
     return !(near > 0.0f);
 }

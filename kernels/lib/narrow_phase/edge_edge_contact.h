@@ -22,8 +22,9 @@ DRAPE_FUNCTION int edgesMet(const EdgePair* pair, int rests, Meeting meeting, Co
         return DRAPE_NO_CONTACT;
     const Vec3 before = edgesOffset(e0, s, t), after = edgesOffset(e1, s, t);
     // The relative displacement, with the fewest roundings.
-    const Vec3 way = rests ? vec3Sub(vec3Mix(e1.m_a, e1.m_b, s), vec3Mix(e0.m_a, e0.m_b, s)) : vec3Sub(after, before);
-    const Vec3 normal = meetingNormal(direction, length, way, -signOf(pair->m_before), pair->m_bounds);
+    const Vec3 displacement =
+        rests ? vec3Sub(vec3Mix(e1.m_a, e1.m_b, s), vec3Mix(e0.m_a, e0.m_b, s)) : vec3Sub(after, before);
+    const Vec3 normal = meetingNormal(direction, length, displacement, -signOf(pair->m_before), pair->m_bounds);
     storeContact(contact, normal, secondPoint(e1, t), vec3(s, t, 0.0f), vec3Dot(normal, before), vec3Dot(normal, after),
                  meeting.m_time);
     return DRAPE_IS_CONTACT;

@@ -41,13 +41,13 @@ DRAPE_FUNCTION int asksForMeeting(int known, PairBounds bounds)
     return bounds.m_mode == DRAPE_CONTINUOUS || known == DRAPE_MAY_MEET;
 }
 
-// Returns the unit normal with the given direction on the side from which the cloth's point came. way: displacement
-// of that point in the step, a straight line. If it runs along the surface, `side` decides: 1 for the direction
-// itself.
-DRAPE_FUNCTION Vec3 meetingNormal(Vec3 direction, float length, Vec3 way, float side, PairBounds bounds)
+// Returns the unit normal with the given direction on the side from which the cloth's point came. displacement:
+// displacement of that point in the step, a straight line. If it runs along the surface, `side` decides: 1 for the
+// direction itself.
+DRAPE_FUNCTION Vec3 meetingNormal(Vec3 direction, float length, Vec3 displacement, float side, PairBounds bounds)
 {
     const Vec3 normal = vec3Direction(direction, length);
-    const float along = vec3Dot(normal, way);
+    const float along = vec3Dot(normal, displacement);
     if (drapeAbs(along) > DRAPE_SEAM * bounds.m_extent) side = along < 0.0f ? 1.0f : -1.0f;
     return vec3Scale(normal, side);
 }

@@ -21,10 +21,10 @@ DRAPE_NAMESPACE_BEGIN
 // Returns the displacement of the row's point of the cloth, m.
 DRAPE_FUNCTION Vec3 rowDisplacement(const ContactRow* row, const DRAPE_NODE_SPACE SolverNode* nodes)
 {
-    Vec3 way = vec3Scale(nodes[row->m_nodes[0]].m_displacement, row->m_weights[0]);
+    Vec3 displacement = vec3Scale(nodes[row->m_nodes[0]].m_displacement, row->m_weights[0]);
     for (DRAPE_UINT k = 1; k < row->m_count; ++k)
-        way = vec3AddScaled(way, nodes[row->m_nodes[k]].m_displacement, row->m_weights[k]);
-    return way;
+        displacement = vec3AddScaled(displacement, nodes[row->m_nodes[k]].m_displacement, row->m_weights[k]);
+    return displacement;
 }
 
 // Returns how far the row's point is below its level, m. passed: the share of the step that has passed, up to 1.
@@ -35,19 +35,19 @@ DRAPE_FUNCTION float rowViolation(const ContactRow* row, const DRAPE_NODE_SPACE 
 
 // Computes the push that makes the row hold, or takes back an earlier push that is not needed any more. Friction
 // removes the point's motion since the step's start along the surface, relative to the obstacle, up to Coulomb's bound.
-// way: m, of the row's point. tolerated: m, violation that remains. relaxation: share of the rest that is corrected.
-// Returns whether there is anything to do; `worst` grows to the violation that a push can correct. shift: kg m; a node
-// moves by its share of it. A row with NaN does nothing.
-DRAPE_FUNCTION int pushRow(ContactRow* row, Vec3 way, float passed, float tolerated, float relaxation, float* worst,
-                           Vec3* shift)
+// displacement: m, of the row's point. tolerated: m, violation that remains. relaxation: share of the rest that is
+// corrected. Returns whether there is anything to do; `worst` grows to the violation that a push can correct. shift: kg
+// m; a node moves by its share of it. A row with NaN does nothing.
+DRAPE_FUNCTION int pushRow(ContactRow* row, Vec3 displacement, float passed, float tolerated, float relaxation,
+                           float* worst, Vec3* shift)
 {
     const Vec3 normal = row->m_normal;
-    const float along = vec3Dot(normal, way);
+    const float along = vec3Dot(normal, displacement);
     const float violation = row->m_level - (1.0f - passed) * row->m_advance - along - tolerated;
     if (!(violation > 0.0f) && !(row->m_multiplier > 0.0f)) return 0;
     *worst = drapeMax(*worst, (violation + tolerated) * row->m_mended);
     const float pushed = drapeMax(0.0f, row->m_multiplier + relaxation * violation * row->m_inverseMobility);
-    const Vec3 slid = vec3Sub(vec3AddScaled(way, normal, -along), vec3Scale(row->m_carried, passed));
+    const Vec3 slid = vec3Sub(vec3AddScaled(displacement, normal, -along), vec3Scale(row->m_carried, passed));
     Vec3 held = vec3AddScaled(row->m_held, slid, -row->m_inverseMobility);
     const float most = row->m_friction * pushed, wanted2 = vec3Dot(held, held);
     if (wanted2 > most * most) held = vec3Scale(held, most / drapeSqrt(wanted2));

@@ -14,12 +14,12 @@ DRAPE_NAMESPACE_BEGIN
 // the first node to the second at the step's start. restSquared, strength: see LinkSweep::set().
 DRAPE_FUNCTION void visitLink(SolverNode* a, SolverNode* b, Vec3 apart, float restSquared, float strength)
 {
-    const Vec3 way = vec3Add(apart, vec3Sub(b->m_displacement, a->m_displacement));
-    const float length2 = vec3Dot(way, way), sum = restSquared + length2;
+    const Vec3 span = vec3Add(apart, vec3Sub(b->m_displacement, a->m_displacement));
+    const float length2 = vec3Dot(span, span), sum = restSquared + length2;
     const float push = sum > DRAPE_LINK_LENGTH2 ? strength * (restSquared - length2) / sum : 0.0f;
     const float pushA = push * a->m_inverseMass, pushB = push * b->m_inverseMass;
-    a->m_displacement = vec3Sub(a->m_displacement, vec3Scale(way, pushA));
-    b->m_displacement = vec3Add(b->m_displacement, vec3Scale(way, pushB));
+    a->m_displacement = vec3Sub(a->m_displacement, vec3Scale(span, pushA));
+    b->m_displacement = vec3Add(b->m_displacement, vec3Scale(span, pushB));
 }
 
 DRAPE_NAMESPACE_END

@@ -14,17 +14,17 @@ typedef struct Box
 // Returns whether the node is farther from its path's end than `sure`, and contacts may move it. NaN counts as far.
 DRAPE_FUNCTION int isFarFromEnd(const DRAPE_NODE_SPACE SolverNode* node, const DRAPE_GLOBAL NodePath* path, float sure)
 {
-    const Vec3 off = vec3Sub(node->m_displacement, path->m_way);
+    const Vec3 off = vec3Sub(node->m_displacement, path->m_vector);
     return !(vec3Dot(off, off) <= sure * sure) && path->m_inverseMass > 0.0f;
 }
 
-// Returns the parameter, 0 to 1, of the closest position on the way from `start` to `end`.
+// Returns the parameter, 0 to 1, of the closest position on the path from `start` to `end`.
 DRAPE_FUNCTION float closestOnPath(Vec3 start, Vec3 end, Vec3 point)
 {
-    const Vec3 way = vec3Sub(end, start);
-    const float length2 = vec3Dot(way, way);
+    const Vec3 path = vec3Sub(end, start);
+    const float length2 = vec3Dot(path, path);
     if (!(length2 > 0.0f)) return 1.0f;
-    return drapeMin(1.0f, drapeMax(0.0f, vec3Dot(vec3Sub(point, start), way) / length2));
+    return drapeMin(1.0f, drapeMax(0.0f, vec3Dot(vec3Sub(point, start), path) / length2));
 }
 
 // Moves a node back to the path between the displacements `start` and `end` if it is farther off than the radius, which
@@ -52,7 +52,7 @@ DRAPE_FUNCTION Box pointBox(Vec3 point)
 // Grows the box by what a node may pass between the end of its path and its current position.
 DRAPE_FUNCTION void growByPassed(Box* box, const DRAPE_NODE_SPACE SolverNode* node, const DRAPE_GLOBAL NodePath* path)
 {
-    const Vec3 end = vec3Add(path->m_start, path->m_way);
+    const Vec3 end = vec3Add(path->m_start, path->m_vector);
     const Vec3 place = vec3Add(path->m_start, node->m_displacement);
     box->m_low = vec3Least(vec3Least(box->m_low, end), place);
     box->m_high = vec3Most(vec3Most(box->m_high, end), place);

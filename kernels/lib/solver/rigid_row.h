@@ -85,15 +85,15 @@ DRAPE_FUNCTION void rigidProjectContact(const RigidSubstep* substep, const DRAPE
     const Vec3 arm = contact->m_arm;
     const RigidPlane plane = contact->m_plane;
     const Vec3 carried = vec3AddScaled(state->m_carried, rigidVelocity(body, arm), substep->m_time);
-    const Vec3 way = vec3Sub(substep->m_nodes[contact->m_node].m_displacement, carried);
+    const Vec3 displacement = vec3Sub(substep->m_nodes[contact->m_node].m_displacement, carried);
     const float mobility = inverseMass + rigidMobility(substep, body, arm, plane.m_normal);
     const float inverseMobility = 1.0f / drapeMax(mobility, 1e-30f);
-    const float along = vec3Dot(plane.m_normal, way);
+    const float along = vec3Dot(plane.m_normal, displacement);
     const float level = plane.m_gap < 0.0f ? plane.m_recover * substep->m_passed : -plane.m_gap;
     const float violation = level - along, before = state->m_multiplier;
     if (!(violation > 0.0f) && !(before > 0.0f)) return;
     const float pushed = drapeMax(0.0f, before + violation * inverseMobility);
-    Vec3 held = vec3AddScaled(state->m_held, vec3AddScaled(way, plane.m_normal, -along), -inverseMobility);
+    Vec3 held = vec3AddScaled(state->m_held, vec3AddScaled(displacement, plane.m_normal, -along), -inverseMobility);
     const float most = plane.m_friction * pushed, wanted = vec3Length(held);
     if (wanted > most) held = vec3Scale(held, most / wanted);
     const Vec3 by = vec3AddScaled(vec3Sub(held, state->m_held), plane.m_normal, pushed - before);

@@ -123,7 +123,7 @@ static FeatureNodes featureNodes(const Solve* solve, const SolveContact* contact
         nodes.m_nodes[k] = contact->m_nodes[k];
         nodes.m_starts[k] = path->m_start;
         nodes.m_carried[k] = carriedStart(surface, path->m_start);
-        nodes.m_ends[k] = vec3Add(path->m_start, path->m_way);
+        nodes.m_ends[k] = vec3Add(path->m_start, path->m_vector);
         nodes.m_inverseMasses[k] = path->m_inverseMass;
     }
     return nodes;
@@ -215,12 +215,12 @@ DRAPE_HOT_FUNCTION ActingContact loadActing(const Solve* solve, const uint index
     return acting;
 }
 
-DRAPE_HOT_FUNCTION Vec3 rowWay(const ActingContact* acting, const uint count, const Displacements* at)
+DRAPE_HOT_FUNCTION Vec3 rowDisplacementOf(const ActingContact* acting, const uint count, const Displacements* at)
 {
-    Vec3 way = vec3Scale(at->m_nodes[0], acting->m_row.m_weights[0]);
-    if (count > 1) way = vec3AddScaled(way, at->m_nodes[1], acting->m_row.m_weights[1]);
-    if (count > 2) way = vec3AddScaled(way, at->m_nodes[2], acting->m_row.m_weights[2]);
-    return way;
+    Vec3 displacement = vec3Scale(at->m_nodes[0], acting->m_row.m_weights[0]);
+    if (count > 1) displacement = vec3AddScaled(displacement, at->m_nodes[1], acting->m_row.m_weights[1]);
+    if (count > 2) displacement = vec3AddScaled(displacement, at->m_nodes[2], acting->m_row.m_weights[2]);
+    return displacement;
 }
 
 // Loads the row of a contact. Its pushes begin anew in each phase.
@@ -256,8 +256,8 @@ DRAPE_HOT_FUNCTION int pushContact(const Solve* solve, const uint index, const S
     const uint count = DRAPE_CONTACT_COUNT(contact->m_flags);
     const Displacements at = displacementsOf(solve, contact);
     Vec3 shift;
-    if (!pushRow(&acting->m_row, rowWay(acting, count, &at), sweep->m_passed, sweep->m_tolerated, sweep->m_relaxation,
-                 &sweep->m_worst, &shift))
+    if (!pushRow(&acting->m_row, rowDisplacementOf(acting, count, &at), sweep->m_passed, sweep->m_tolerated,
+                 sweep->m_relaxation, &sweep->m_worst, &shift))
         return 0;
     const Vec3 held = acting->m_row.m_held;
     ((__global float4*)(solve->m_acting + index))[2] = (float4)(held.x, held.y, held.z, acting->m_row.m_multiplier);
@@ -280,9 +280,9 @@ DRAPE_HOT_FUNCTION int projectContact(const Solve* solve, const uint index, cons
     if ((contact->m_flags & DRAPE_CONTACT_TURNS) && acting->m_phase != sweep->m_phase)
     {
         const Displacements at = displacementsOf(solve, contact);
-        const Vec3 way = rowWay(acting, DRAPE_CONTACT_COUNT(contact->m_flags), &at);
+        const Vec3 displacement = rowDisplacementOf(acting, DRAPE_CONTACT_COUNT(contact->m_flags), &at);
         const float level = acting->m_row.m_level - (1.0f - sweep->m_passed) * acting->m_row.m_advance;
-        if (level - vec3Dot(acting->m_row.m_normal, way) > 0.0f)
+        if (level - vec3Dot(acting->m_row.m_normal, displacement) > 0.0f)
         {
             const Solve view = *solve;
             const SolveContact copy = *contact;

@@ -9,7 +9,7 @@
 // region.
 DRAPE_RARE_FUNCTION int isNearRegion(const Solve* solve, const uint node, __global const SolveRegion* region)
 {
-    Box box, own = pointBox(vec3Add(solve->m_paths[node].m_start, solve->m_paths[node].m_way));
+    Box box, own = pointBox(vec3Add(solve->m_paths[node].m_start, solve->m_paths[node].m_vector));
     box.m_low = region->m_low;
     box.m_high = region->m_high;
     growByPassed(&own, solve->m_nodes + node, solve->m_paths + node);
@@ -18,7 +18,7 @@ DRAPE_RARE_FUNCTION int isNearRegion(const Solve* solve, const uint node, __glob
     for (uint i = list[0]; i < list[1] && !near; ++i)
     {
         __global const int* face = solve->m_faces + 3 * solve->m_facesOfNode[i];
-        Box passed = pointBox(vec3Add(solve->m_paths[face[0]].m_start, solve->m_paths[face[0]].m_way));
+        Box passed = pointBox(vec3Add(solve->m_paths[face[0]].m_start, solve->m_paths[face[0]].m_vector));
         for (int k = 0; k < 3; ++k)
             growByPassed(&passed, solve->m_nodes + face[k], solve->m_paths + face[k]);
         near = boxesMeet(&passed, &box);
@@ -69,7 +69,7 @@ static void bringBackAllowed(const Solve* solve, const SolveRange nodes)
     {
         const SolveAllowance allowance = solve->m_allowances[node];
         if (!solve->m_states[node].m_isFar || allowance.m_end == DRAPE_INFINITY) continue;
-        bringBack(solve->m_nodes + node, solve->m_states + node, vec3(0.0f, 0.0f, 0.0f), solve->m_paths[node].m_way,
+        bringBack(solve->m_nodes + node, solve->m_states + node, vec3(0.0f, 0.0f, 0.0f), solve->m_paths[node].m_vector,
                   allowance.m_start, allowance.m_end);
     }
 }
@@ -89,7 +89,7 @@ DRAPE_RARE_FUNCTION void bringBackNear(const Solve* solve, const SolveRange node
         const Vec3 from = solve->m_paths[node].m_start;
         const Vec3 start = vec3Sub(carriedStart(solve->m_surfaces + region->m_surface, from), from);
         const float end = solve->m_allowances[node].m_hasContact ? region->m_start : region->m_end;
-        bringBack(solve->m_nodes + node, solve->m_states + node, start, solve->m_paths[node].m_way, region->m_start,
+        bringBack(solve->m_nodes + node, solve->m_states + node, start, solve->m_paths[node].m_vector, region->m_start,
                   end);
     }
 }
@@ -102,7 +102,7 @@ static void keepNear(const Solve* solve, const SolveRange nodes)
     {
         if (!solve->m_allowances[node].m_hasContact) continue;
         if (!isFarFromEnd(nodeAt(solve, node), solve->m_paths + node, cloth->m_sure)) continue;
-        bringBack(nodeAt(solve, node), solve->m_states + node, vec3(0.0f, 0.0f, 0.0f), solve->m_paths[node].m_way,
+        bringBack(nodeAt(solve, node), solve->m_states + node, vec3(0.0f, 0.0f, 0.0f), solve->m_paths[node].m_vector,
                   cloth->m_leastTolerance, cloth->m_leastTolerance);
     }
     syncNodes();

@@ -12,7 +12,7 @@ static void beginNodes(const Solve* solve, const SolveRange nodes)
     {
         const NodePath path = solve->m_paths[i];
         nodeAt(solve, i)->m_inverseMass = path.m_freeMass;
-        nodeBegin(nodeAt(solve, i), solve->m_states + i, path.m_way, solve->m_accelerations[i], cloth->m_perStep,
+        nodeBegin(nodeAt(solve, i), solve->m_states + i, path.m_vector, solve->m_accelerations[i], cloth->m_perStep,
                   cloth->m_pathShare);
         solve->m_states[i].m_shifted = 0;
     }

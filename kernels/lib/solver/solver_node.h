@@ -10,26 +10,26 @@ DRAPE_NAMESPACE_BEGIN
 // Bounds of nodeSettle(): the displacement in a step, as a share of the acceleration times the step's time squared, and
 // the speed at its end, as a share of the acceleration times the time. Measured: docs/design_notes/contact_sweeps.md,
 // "Rest".
-#define DRAPE_SETTLED_WAY 0.015f
+#define DRAPE_SETTLED_DISPLACEMENT 0.015f
 #define DRAPE_SETTLED_SPEED 0.006f
 
 // Bound of the displacement, in the same unit, up to which corrections alone moved a node without such a speed, and the
-// share of its way that it goes then.
-#define DRAPE_CORRECTED_WAY 0.165f
+// share of its displacement that remains then.
+#define DRAPE_CORRECTED_DISPLACEMENT 0.165f
 #define DRAPE_CORRECTED_SHARE 0.75f
 
 // Puts a node with hardly any speed to rest: at its path's start if it hardly moved in the step, or at a share of its
-// way if corrections moved it somewhat farther. Without acceleration nothing changes. acceleration: m/s², by gravity
-// and forces. perStep: 1/s, the inverse of the step's time.
+// displacement if corrections moved it somewhat farther. Without acceleration nothing changes. acceleration: m/s², by
+// gravity and forces. perStep: 1/s, the inverse of the step's time.
 DRAPE_FUNCTION void nodeSettle(DRAPE_NODE_SPACE SolverNode* node, DRAPE_GLOBAL NodeState* state, Vec3 acceleration,
                                float perStep)
 {
     const float most2 = vec3Dot(acceleration, acceleration);
     const Vec3 speed = vec3Scale(state->m_velocity, perStep / DRAPE_SETTLED_SPEED);
-    const Vec3 way = vec3Scale(node->m_displacement, perStep * perStep / DRAPE_SETTLED_WAY);
-    const float farther = DRAPE_SETTLED_WAY / DRAPE_CORRECTED_WAY;
-    if (!(vec3Dot(speed, speed) < most2) || !(vec3Dot(way, way) * (farther * farther) < most2)) return;
-    const float share = vec3Dot(way, way) < most2 ? 0.0f : DRAPE_CORRECTED_SHARE;
+    const Vec3 moved = vec3Scale(node->m_displacement, perStep * perStep / DRAPE_SETTLED_DISPLACEMENT);
+    const float farther = DRAPE_SETTLED_DISPLACEMENT / DRAPE_CORRECTED_DISPLACEMENT;
+    if (!(vec3Dot(speed, speed) < most2) || !(vec3Dot(moved, moved) * (farther * farther) < most2)) return;
+    const float share = vec3Dot(moved, moved) < most2 ? 0.0f : DRAPE_CORRECTED_SHARE;
     node->m_displacement = vec3Scale(node->m_displacement, share);
     state->m_velocity = vec3(0.0f, 0.0f, 0.0f);
 }
@@ -48,11 +48,11 @@ DRAPE_FUNCTION void nodeShift(DRAPE_NODE_SPACE SolverNode* node, DRAPE_GLOBAL No
 
 // Puts the node at its path's start, with the velocity that leads to the end under constant acceleration. perStep: 1/s,
 // the inverse of the step's time. share: s, of the acceleration in the mean velocity (Substeps::pathShare()).
-DRAPE_FUNCTION void nodeBegin(DRAPE_NODE_SPACE SolverNode* node, DRAPE_GLOBAL NodeState* state, Vec3 way,
+DRAPE_FUNCTION void nodeBegin(DRAPE_NODE_SPACE SolverNode* node, DRAPE_GLOBAL NodeState* state, Vec3 path,
                               Vec3 acceleration, float perStep, float share)
 {
     node->m_displacement = vec3(0.0f, 0.0f, 0.0f);
-    state->m_velocity = vec3AddScaled(vec3Scale(way, perStep), acceleration, -share);
+    state->m_velocity = vec3AddScaled(vec3Scale(path, perStep), acceleration, -share);
 }
 
 // Moves the node through a substep of `time` seconds.

@@ -167,10 +167,10 @@ inline ContactGroup::Lanes ContactGroup::excessOfNodes(const Block& block, const
     Lanes at[3] = {Lanes{a.x, a.x, a.x, a.x}, Lanes{a.y, a.y, a.y, a.y}, Lanes{a.z, a.z, a.z, a.z}};
     for (int k = 1; k < count; ++k)
     {
-        const Vec3 way = vec3Sub(nodes[block.m_nodes[k]].m_displacement, a);
-        at[0] += block.m_weights[k - 1] * way.x;
-        at[1] += block.m_weights[k - 1] * way.y;
-        at[2] += block.m_weights[k - 1] * way.z;
+        const Vec3 offset = vec3Sub(nodes[block.m_nodes[k]].m_displacement, a);
+        at[0] += block.m_weights[k - 1] * offset.x;
+        at[1] += block.m_weights[k - 1] * offset.y;
+        at[2] += block.m_weights[k - 1] * offset.z;
     }
     return block.m_level + slack - (block.m_normal[0] * at[0] + block.m_normal[1] * at[1] + block.m_normal[2] * at[2]);
 }

@@ -88,9 +88,9 @@ struct Sums
 bool sumUp(const SolverNodes& nodes, const Substeps& substeps, const Kept& kept, Sums& sums)
 {
     const double time = double(substeps.time()), given = kept.m_received * time;
-    // A node begins with the velocity way / time - pathTime() * acceleration. Substeps accelerate nodes where they
+    // A node begins with the velocity path / time - pathTime() * acceleration. Substeps accelerate nodes where they
     // start.
-    const double perWay = kept.m_before / time, perForce = given - kept.m_before * double(substeps.pathTime());
+    const double perPath = kept.m_before / time, perForce = given - kept.m_before * double(substeps.pathTime());
     const double inMotion = given * 0.5 * (1 - 1 / double(substeps.count()));
     const Vec3d origin = wide(nodes.start(0));
     for (std::size_t i = 0; i < nodes.count(); ++i)
@@ -100,7 +100,7 @@ bool sumUp(const SolverNodes& nodes, const Substeps& substeps, const Kept& kept,
         const double mass = 1 / double(node.m_inverseMass);
         const Vec3d force = wide(substeps.accelerations()[i]), velocity = wide(nodes.velocity(i));
         const Vec3d start = wide(nodes.start(i)) - origin, moved = wide(node.m_displacement), end = start + moved;
-        const Vec3d missing = mass * (perWay * wide(nodes.way(i)) + perForce * force - velocity);
+        const Vec3d missing = mass * (perPath * wide(nodes.pathVector(i)) + perForce * force - velocity);
         const Vec3d momentum = mass * velocity, moment = mass * end;
         sums.m_mass += mass;
         sums.m_energy += dot(momentum, velocity);

@@ -60,7 +60,7 @@ bool MotionLimit::anyOffPath(const SolverNodes& nodes)
     m_farNodes.clear();
     for (std::size_t i = 0; i < nodes.count(); ++i)
     {
-        const Vec3 off = vec3Sub(nodes.displacement(i), nodes.way(i));
+        const Vec3 off = vec3Sub(nodes.displacement(i), nodes.pathVector(i));
         if (vec3Dot(off, off) > most * most) m_farNodes.push_back(FarNode{int(i), Allowance{kInfinity, kInfinity}});
     }
     if (m_farNodes.empty()) return false;
@@ -77,7 +77,7 @@ bool MotionLimit::isFar(const SolverNodes& nodes, std::size_t node) const
 void MotionLimit::keepNear(SolverNodes& nodes, std::size_t node) const
 {
     if (m_hasContact[node] && isFar(nodes, node))
-        bringBack(nodes, node, vec3(0, 0, 0), nodes.way(node), m_leastTolerance, m_leastTolerance);
+        bringBack(nodes, node, vec3(0, 0, 0), nodes.pathVector(node), m_leastTolerance, m_leastTolerance);
 }
 
 float MotionLimit::mostCarried(const SolverNodes& nodes, Carried which) const
@@ -186,7 +186,7 @@ void MotionLimit::applyResting(SolverNodes& nodes, bool withContacts)
         for (FarNode& far : m_farNodes)
         {
             const std::size_t at = std::size_t(far.m_node);
-            // Tests the way to the end: a surface that met a node's face there may be away from all boxes at the
+            // Tests the path to the end: a surface that met a node's face there may be away from all boxes at the
             // current position.
             if (!(m_hasContact[at] ? withContacts : anyNear && m_isNear[at])) continue;
             const Allowance own = allowance(region, at);
@@ -198,7 +198,7 @@ void MotionLimit::applyResting(SolverNodes& nodes, bool withContacts)
     {
         if (far.m_allowed.m_end == kInfinity) continue;
         const std::size_t at = std::size_t(far.m_node);
-        bringBack(nodes, at, vec3(0, 0, 0), nodes.way(at), far.m_allowed.m_start, far.m_allowed.m_end);
+        bringBack(nodes, at, vec3(0, 0, 0), nodes.pathVector(at), far.m_allowed.m_start, far.m_allowed.m_end);
     }
 }
 
@@ -212,7 +212,7 @@ bool MotionLimit::applyMoving(SolverNodes& nodes, const Region& region)
         if (!m_isNear[at]) continue;
         const Allowance own = allowance(region, at);
         const Vec3 start = vec3Sub(region.m_carry.start(at, nodes.start(at)), nodes.start(at));
-        moved = bringBack(nodes, at, start, nodes.way(at), own.m_start, own.m_end) || moved;
+        moved = bringBack(nodes, at, start, nodes.pathVector(at), own.m_start, own.m_end) || moved;
     }
     return moved;
 }

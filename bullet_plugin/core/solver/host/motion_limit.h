@@ -49,7 +49,7 @@ public:
     void addContactNode(int node) { m_hasContact[std::size_t(node)] = 1; }
     // Returns whether the cloth may have passed a surface without a contact. This is so if a node, limited or not,
     // ended more than kFreeShare of the reach from its path's end, and the node or one of its faces came near an
-    // obstacle on the way.
+    // obstacle on the path.
     bool anyOffPath(const SolverNodes& nodes);
     // Brings nodes that left their path too far back to the nearest point of the allowed region.
     void apply(SolverNodes& nodes);

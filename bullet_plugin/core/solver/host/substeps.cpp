@@ -48,10 +48,11 @@ void Substeps::prepare(float time, int count, float damping, const std::vector<V
 void Substeps::begin(SolverNodes& nodes, ThreadTeam* threads)
 {
     m_links.start(nodes.paths(), threads);
-    forNodes(
-        nodes.count(), threads,
-        [&](std::size_t i)
-        { nodeBegin(nodes.nodes() + i, nodes.states() + i, nodes.way(i), accelerations()[i], perStep(), pathTime()); });
+    forNodes(nodes.count(), threads,
+             [&](std::size_t i) {
+                 nodeBegin(nodes.nodes() + i, nodes.states() + i, nodes.pathVector(i), accelerations()[i], perStep(),
+                           pathTime());
+             });
 }
 
 void Substeps::advance(SolverNodes& nodes, ThreadTeam* threads)

@@ -43,7 +43,7 @@ public:
     // Prepares a step of `time` seconds (> 0) in `count` parts. damping: the share of a velocity that is lost in the
     // step, 0 to 1. accelerations: of the nodes, m/s²; they must stay in place until the last substep.
     void prepare(float time, int count, float damping, const std::vector<Vec3>& accelerations);
-    // Tells that another solver made the step before: it may have left other errors than substeps do. Call before
+    // Records that another solver made the step before: it may have left other errors than substeps do. Call before
     // prepare().
     void changeOver() { m_changesOver = true; }
     // Returns the share s in the motion of a free node in a step: time · velocity + s · time² · acceleration.
