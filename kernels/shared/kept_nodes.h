@@ -19,11 +19,11 @@ typedef struct KeptNode
 typedef struct KeptCloth
 {
     DRAPE_UINT m_count;   // nodes
-    DRAPE_UINT m_before;  // place of the first node at the step's start
-    DRAPE_UINT m_after;   // place at its end
+    DRAPE_UINT m_before;  // index of the first node at the step's start
+    DRAPE_UINT m_after;   // index at its end
     DRAPE_UINT m_start;   // floats, of the first node's start among the detection's nodes; DRAPE_NOT_DETECTED: none
     DRAPE_UINT m_end;     // floats, of its end
-    DRAPE_UINT m_solved;  // place among the solver's nodes
+    DRAPE_UINT m_solved;  // index among the solver's nodes
     Vec3 m_gravity;       // m/s, what gravity adds to a velocity in the step
     float m_time;         // s, the step's time
     float m_perSecond;    // 1/s, its inverse as Bullet has it

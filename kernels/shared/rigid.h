@@ -71,7 +71,7 @@ typedef struct RigidChain
     DRAPE_UINT m_first, m_last;
 } RigidChain;
 
-// Numbers of elements, and places of arrays in the step's input and in the working memory, in words. m_states: of
+// Numbers of elements, and offsets of arrays in the step's input and in the working memory, in words. m_states: of
 // anchors, then of contacts.
 typedef struct RigidLayout
 {

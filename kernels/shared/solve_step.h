@@ -102,8 +102,8 @@ typedef struct SolveFeature
 typedef struct SolveBucket
 {
     DRAPE_UINT m_count;   // contacts
-    DRAPE_UINT m_first;   // place of the first one
-    DRAPE_UINT m_filled;  // contacts that have a place
+    DRAPE_UINT m_first;   // position of the first one
+    DRAPE_UINT m_filled;  // contacts that have a position
     DRAPE_UINT m_pushed;  // see DRAPE_PUSH_RECORD()
 } SolveBucket;
 
@@ -195,13 +195,13 @@ typedef struct SolveLayout
     DRAPE_UINT m_nodeCount, m_bucketCount, m_obstacleCount;
     // In the step's input. By node in the caller's order: paths, accelerations.
     DRAPE_UINT m_cloths, m_givenPaths, m_givenAccelerations, m_surfaces, m_regions, m_obstacles;
-    // In the working memory. m_order: by contact in the order of sweeps, its place in the list of contacts.
+    // In the working memory. m_order: by contact in the order of sweeps, its index in the list of contacts.
     DRAPE_UINT m_nodes, m_states, m_results;
     DRAPE_UINT m_buckets, m_progress, m_allowances, m_total;
     DRAPE_UINT m_paths, m_accelerations, m_sorted, m_order, m_acting, m_spans, m_marks;
     // In the topology. m_faceLists: by node, the position of its faces; then the last one's end. m_faces: three nodes
-    // each. m_places: by node, its place in the caller's order.
-    DRAPE_UINT m_links, m_linkBatches, m_groups, m_levelGroups, m_faceLists, m_facesOfNode, m_faces, m_places,
+    // each. m_nodeOrder: by node, its index in the caller's order.
+    DRAPE_UINT m_links, m_linkBatches, m_groups, m_levelGroups, m_faceLists, m_facesOfNode, m_faces, m_nodeOrder,
         m_features, m_bucketCloths;
 } SolveLayout;
 

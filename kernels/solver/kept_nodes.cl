@@ -52,12 +52,12 @@ __kernel void takeKeptPaths(DRAPE_SOLVE_KEPT)
 {
     __global const KeptCloth* cloth = cloths + get_global_id(0) / launch.m_lanes;
     if (get_global_id(0) / launch.m_lanes >= launch.m_cloths) return;
-    __global const uint* places = (__global const uint*)(topology + layout.m_places) + cloth->m_solved;
+    __global const uint* nodeOrder = (__global const uint*)(topology + layout.m_nodeOrder) + cloth->m_solved;
     __global NodePath* paths = (__global NodePath*)(work + layout.m_paths) + cloth->m_solved;
     __global Vec3* accelerations = (__global Vec3*)(work + layout.m_accelerations) + cloth->m_solved;
     for (uint i = get_global_id(0) % launch.m_lanes; i < cloth->m_count; i += launch.m_lanes)
     {
-        const KeptNode node = kept[cloth->m_before + (places[i] - cloth->m_solved)];
+        const KeptNode node = kept[cloth->m_before + (nodeOrder[i] - cloth->m_solved)];
         const Predicted predicted = predict(cloth, &node);
         NodePath path;
         path.m_start = node.m_position;
@@ -92,7 +92,7 @@ __kernel void keepNodes(DRAPE_SOLVE_KEPT, DRAPE_UPDATES(KeptBounds, bounds))
     const uint index = get_global_id(0) / launch.m_lanes;
     if (index >= launch.m_cloths) return;
     __global const KeptCloth* cloth = cloths + index;
-    __global const uint* places = (__global const uint*)(topology + layout.m_places) + cloth->m_solved;
+    __global const uint* nodeOrder = (__global const uint*)(topology + layout.m_nodeOrder) + cloth->m_solved;
     __global const NodePath* paths = (__global const NodePath*)(work + layout.m_paths) + cloth->m_solved;
     __global const SolverNode* ends = (__global const SolverNode*)(work + layout.m_nodes) + cloth->m_solved;
     __global const NodeState* states = (__global const NodeState*)(work + layout.m_states) + cloth->m_solved;
@@ -112,7 +112,7 @@ __kernel void keepNodes(DRAPE_SOLVE_KEPT, DRAPE_UPDATES(KeptBounds, bounds))
         node.m_inverseMass = path.m_freeMass;
         node.m_velocity = states[i].m_velocity;
         node.m_unused = 0.0f;
-        kept[cloth->m_after + (places[i] - cloth->m_solved)] = node;
+        kept[cloth->m_after + (nodeOrder[i] - cloth->m_solved)] = node;
         const Predicted predicted = predict(cloth, &node);
         addTo(&all, 0, node.m_position);
         addTo(&all, 1, predicted.m_free);

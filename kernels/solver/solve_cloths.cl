@@ -178,11 +178,11 @@ DRAPE_HOT_FUNCTION void storeLeaf(const Solve* solve, __global SolverNode* to)
 }
 
 // Runs one pass over a leaf.
-DRAPE_HOT_FUNCTION void sweepLeaf(const Solve* solve, const SolvePass* pass, __global SolverNode* places)
+DRAPE_HOT_FUNCTION void sweepLeaf(const Solve* solve, const SolvePass* pass, __global SolverNode* stored)
 {
     if (!takesPart(solve, pass)) return;
     Sweep sweep;
-    loadLeaf(solve, places);
+    loadLeaf(solve, stored);
     if (pass->m_pass == DRAPE_PASS_LINKS)
     {
         syncNodes();
@@ -197,7 +197,7 @@ DRAPE_HOT_FUNCTION void sweepLeaf(const Solve* solve, const SolvePass* pass, __g
         sweepPass(solve, pass, &sweep);
     }
     syncNodes();
-    storeLeaf(solve, places);
+    storeLeaf(solve, stored);
 }
 
 // One text for both sizes of groups.

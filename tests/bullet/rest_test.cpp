@@ -399,7 +399,7 @@ TEST_P(RestingCloth, TheThicknessIsTheSumOfBothMargins)
     EXPECT_FLOAT_EQ(rest.m_plugin.contacts().front().m_thickness, 0.04f);
 }
 
-// The contact rounds must not add energy: the cloth does not creep over many steps.
+// The contact sweeps must not add energy: the cloth does not creep over many steps.
 TEST_P(RestingCloth, StaysWhereItLies)
 {
     Rest rest(GetParam().m_settings);

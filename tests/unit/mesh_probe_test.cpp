@@ -189,7 +189,7 @@ TEST(MeshProbe, ListsTrianglesThatMeetAndTheMiddleOfWhereTheyDo)
 TEST(MeshProbe, PointsLeaveTheBoxOnTheShortestWay)
 {
     const MeshProbe probe = probeOf(makeBox(1, 2, 3));
-    EXPECT_EQ(probe.wayOutOfBox({vec3(0.4f, 0.1f, 0), vec3(0.6f, 0, 0)}).x, 1.0f);
-    EXPECT_EQ(probe.wayOutOfBox({vec3(0, -0.9f, 0), vec3(0.1f, -1.5f, 0)}).y, -1.0f);
+    EXPECT_EQ(probe.directionOutOfBox({vec3(0.4f, 0.1f, 0), vec3(0.6f, 0, 0)}).x, 1.0f);
+    EXPECT_EQ(probe.directionOutOfBox({vec3(0, -0.9f, 0), vec3(0.1f, -1.5f, 0)}).y, -1.0f);
 }
 }  // namespace drape::test

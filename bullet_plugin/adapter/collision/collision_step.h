@@ -116,7 +116,7 @@ private:
 
     PluginState& m_state;
     std::vector<BodyContacts> m_bodies, m_spare;
-    std::unordered_map<MeshId, std::size_t> m_byCloth;  // places among m_bodies
+    std::unordered_map<MeshId, std::size_t> m_byCloth;  // indices in m_bodies
     std::unordered_map<const btSoftBody*, std::size_t> m_byBody;
     std::vector<Pair> m_pairs;
     std::unordered_set<std::uint64_t> m_paired;  // a pair's cloth above its obstacle

@@ -224,7 +224,7 @@ void PairStarts::drawBack(const StartingPair& pair, const MeshProbe& probe, int 
 
 void PairStarts::moveOut(const StartingPair& pair, const MeshProbe& probe, Guard& guard, BodyContacts& body)
 {
-    if (guard.m_outSteps++ == 0) guard.m_out = probe.wayOutOfBox(m_places);
+    if (guard.m_outSteps++ == 0) guard.m_out = probe.directionOutOfBox(m_places);
     const Vec3 step = vec3Scale(guard.m_out, static_cast<float>(kDrawnDepth));
     for (std::size_t i = 0; i < m_places.size(); ++i)
     {

@@ -183,7 +183,7 @@ private:
     std::unordered_map<const btSoftBody*, const btBroadphaseProxy*> m_unstepped;
     std::unordered_map<const btSoftBodySolver*, KinematicMotions> m_motions;
     std::vector<PairNote> m_notes;                          // in the order of dispatch
-    std::unordered_map<const void*, std::size_t> m_noteOf;  // places among them, by owner
+    std::unordered_map<const void*, std::size_t> m_noteOf;  // indices in them, by owner
     std::unordered_map<const void*, Owned> m_owned;
     std::unordered_map<const btSoftBody*, ClothMirror> m_cloths;
     std::unordered_map<ObstacleKey, ObstacleMirror, ObstacleKeyHash> m_obstacles;

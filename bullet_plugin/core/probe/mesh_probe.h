@@ -45,7 +45,7 @@ public:
     Vec3 sumOfNormals(const std::vector<std::uint32_t>& triangles, Vec3 point) const;
 
     // Returns the axis, or its opposite, along which points leave the mesh's box soonest; unit.
-    Vec3 wayOutOfBox(const std::vector<Vec3>& points) const;
+    Vec3 directionOutOfBox(const std::vector<Vec3>& points) const;
 
     // Returns whether the mesh is closed. The first call determines it, O(n log n).
     bool isClosed();

@@ -130,7 +130,7 @@ float MeshProbe::size() const
     return size;
 }
 
-Vec3 MeshProbe::wayOutOfBox(const std::vector<Vec3>& points) const
+Vec3 MeshProbe::directionOutOfBox(const std::vector<Vec3>& points) const
 {
     const Node& root = m_nodes[m_root];
     Vec3 best = vec3(0, 1, 0);

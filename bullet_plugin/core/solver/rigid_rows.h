@@ -28,7 +28,7 @@ public:
     const std::vector<RigidBody>& bodies() const { return *m_bodies; }
     const std::vector<RigidContact>& contacts() const { return m_contacts; }
     const std::vector<RigidAnchor>& anchors() const { return m_anchors; }
-    // The cloth's place in the order in which a sweep visits cloths.
+    // The cloth's position in the order in which a sweep visits cloths.
     void setTurn(std::size_t turn) { m_turn = turn; }
     std::size_t turn() const { return m_turn; }
     // Returns whether all bodies of the rows yield.

@@ -67,11 +67,11 @@ DRAPE_FUNCTION float targetGap(float startGap, float hardness, float thickness)
     return drapeMin(0.0f, recovered);
 }
 
-DRAPE_FUNCTION Vec3 weightedPoint(DRAPE_UINT count, const Vec3* places, const float* weights)
+DRAPE_FUNCTION Vec3 weightedPoint(DRAPE_UINT count, const Vec3* positions, const float* weights)
 {
-    Vec3 at = vec3Scale(places[0], weights[0]);
+    Vec3 at = vec3Scale(positions[0], weights[0]);
     for (DRAPE_UINT k = 1; k < count; ++k)
-        at = vec3AddScaled(at, places[k], weights[k]);
+        at = vec3AddScaled(at, positions[k], weights[k]);
     return at;
 }
 
@@ -167,14 +167,14 @@ DRAPE_FUNCTION ActingContact actingContact(const FeatureNodes* nodes, const Cont
 DRAPE_FUNCTION int renewPlane(ActingContact* contact, const FeatureNodes* nodes, const Vec3* displacements,
                               float passed, const ContactPlane* found, ContactPlane* plane)
 {
-    Vec3 places[3];
+    Vec3 positions[3];
     for (DRAPE_UINT k = 0; k < 3; ++k)
     {
         const DRAPE_UINT at = k < nodes->m_count ? k : nodes->m_count - 1;  // a link repeats its second node
-        const Vec3 place = vec3Add(nodes->m_starts[at], displacements[at]);
-        places[k] = vec3AddScaled(place, vec3Sub(nodes->m_carried[at], nodes->m_starts[at]), 1.0f - passed);
+        const Vec3 position = vec3Add(nodes->m_starts[at], displacements[at]);
+        positions[k] = vec3AddScaled(position, vec3Sub(nodes->m_carried[at], nodes->m_starts[at]), 1.0f - passed);
     }
-    if (!planeOfFace(places, found->m_point, found->m_normal, plane)) return 0;
+    if (!planeOfFace(positions, found->m_point, found->m_normal, plane)) return 0;
     if (nodes->m_count == 2) joinCorners(plane->m_weights);
     setPlane(contact, nodes, plane);
     return 1;

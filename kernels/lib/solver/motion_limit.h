@@ -32,9 +32,9 @@ DRAPE_FUNCTION float closestOnPath(Vec3 start, Vec3 end, Vec3 point)
 DRAPE_FUNCTION int bringBack(DRAPE_NODE_SPACE SolverNode* node, DRAPE_GLOBAL NodeState* state, Vec3 start, Vec3 end,
                              float startRadius, float endRadius)
 {
-    const Vec3 place = node->m_displacement;
-    const float t = closestOnPath(start, end, place);
-    const Vec3 off = vec3Sub(place, vec3Mix(start, end, t));
+    const Vec3 displacement = node->m_displacement;
+    const float t = closestOnPath(start, end, displacement);
+    const Vec3 off = vec3Sub(displacement, vec3Mix(start, end, t));
     const float radius = startRadius + (endRadius - startRadius) * t;
     const float distance = vec3Length(off);
     if (!(distance > radius)) return 0;
@@ -53,9 +53,9 @@ DRAPE_FUNCTION Box pointBox(Vec3 point)
 DRAPE_FUNCTION void growByPassed(Box* box, const DRAPE_NODE_SPACE SolverNode* node, const DRAPE_GLOBAL NodePath* path)
 {
     const Vec3 end = vec3Add(path->m_start, path->m_vector);
-    const Vec3 place = vec3Add(path->m_start, node->m_displacement);
-    box->m_low = vec3Least(vec3Least(box->m_low, end), place);
-    box->m_high = vec3Most(vec3Most(box->m_high, end), place);
+    const Vec3 position = vec3Add(path->m_start, node->m_displacement);
+    box->m_low = vec3Least(vec3Least(box->m_low, end), position);
+    box->m_high = vec3Most(vec3Most(box->m_high, end), position);
 }
 
 DRAPE_FUNCTION int boxesMeet(const Box* a, const Box* b)

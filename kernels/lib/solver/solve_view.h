@@ -49,7 +49,7 @@ typedef struct Solve
 } Solve;
 
 // Words of local memory that a group shares: one for sums, three for rounds, then three lists by bucket of the group.
-// They hold a record of its pushes, the place of its first contact, and the end of its last one. A group has a bucket
+// They hold a record of its pushes, the index of its first contact, and the end of its last one. A group has a bucket
 // for its nodes and two for each of 63 colours at most.
 #define DRAPE_SHARED_PENDING 1
 #define DRAPE_SHARED_PUSHED 4

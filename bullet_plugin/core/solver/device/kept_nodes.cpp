@@ -9,7 +9,7 @@ namespace drape
 {
 namespace
 {
-// Maximum work-items of a cloth. Their bounds meet in one place of memory.
+// Maximum work-items of a cloth. Their bounds meet in one word of memory.
 constexpr std::size_t kMostLanes = 4096;
 
 KeptBoxes boxesOf(const KeptBounds& bounds)
@@ -86,13 +86,13 @@ void KeptNodes::write(KeptId id, const std::vector<KeptNode>& nodes, const KeptB
     slot.m_waitsAtWrite = m_device->waits();
     KeptNode* const sent = m_written->data() + slot.m_first;
     std::copy(nodes.begin(), nodes.end(), sent);
-    m_nodes.write(*m_device, sent, slot.m_count, placeOf(slot, slot.m_turn));
+    m_nodes.write(*m_device, sent, slot.m_count, firstNodeOf(slot, slot.m_turn));
 }
 
 void KeptNodes::beginRead(KeptId id)
 {
     const Slot& slot = m_slots[id];
-    m_nodes.read(*m_device, m_read->data() + slot.m_first, slot.m_count, placeOf(slot, slot.m_turn));
+    m_nodes.read(*m_device, m_read->data() + slot.m_first, slot.m_count, firstNodeOf(slot, slot.m_turn));
     m_device->flush();
 }
 
@@ -101,8 +101,8 @@ KeptCloth KeptNodes::clothOf(const KeptStep& step) const
     const Slot& slot = m_slots[step.m_id];
     KeptCloth cloth = {};
     cloth.m_count = cl_uint(slot.m_count);
-    cloth.m_before = placeOf(slot, slot.m_turn);
-    cloth.m_after = placeOf(slot, 1 - slot.m_turn);
+    cloth.m_before = firstNodeOf(slot, slot.m_turn);
+    cloth.m_after = firstNodeOf(slot, 1 - slot.m_turn);
     cloth.m_start = cloth.m_end = DRAPE_NOT_DETECTED;
     cloth.m_gravity = step.m_gravity;
     cloth.m_time = step.m_time;
@@ -149,15 +149,15 @@ void KeptNodes::keep(const SolveLayout& layout, Buffer<SolveTopologyWord>& topol
     m_bounds.read(*m_device, m_boundsRead.data(), m_boundsRead.size());
 }
 
-bool KeptNodes::isGood(std::size_t place) const
+bool KeptNodes::isGood(std::size_t index) const
 {
-    return m_boundsRead[place].m_isInvalid == 0 && m_boundsRead[place].m_isOffPath == 0;
+    return m_boundsRead[index].m_isInvalid == 0 && m_boundsRead[index].m_isOffPath == 0;
 }
 
-void KeptNodes::accept(KeptId id, std::size_t place)
+void KeptNodes::accept(KeptId id, std::size_t index)
 {
     Slot& slot = m_slots[id];
     slot.m_turn = 1 - slot.m_turn;
-    slot.m_boxes = boxesOf(m_boundsRead[place]);
+    slot.m_boxes = boxesOf(m_boundsRead[index]);
 }
 }  // namespace drape

@@ -34,7 +34,7 @@ public:
 
     // Writes the paths of the cloths for the detection. Returns after enqueueing.
     void predict(const std::vector<KeptCloth>& cloths, Buffer<float>& detected);
-    // Returns the record of a cloth in a step; places in the detection and the solver are left out.
+    // Returns the record of a cloth in a step; indices in the detection and the solver are left out.
     KeptCloth clothOf(const KeptStep& step) const;
     // Writes the paths for the solver.
     void takePaths(const std::vector<KeptCloth>& cloths, const SolveLayout& layout, Buffer<SolveTopologyWord>& topology,
@@ -42,10 +42,10 @@ public:
     // Takes the solver's result and reads the bounds. The arrays stay the caller's until a wait for the device.
     void keep(const SolveLayout& layout, Buffer<SolveTopologyWord>& topology, Buffer<SolveWorkWord>& work);
     // Returns whether the last result of keep() can be accepted for a cloth, after the wait: no node left its path too
-    // far, and all numbers are finite. place: in the list of takePaths().
-    bool isGood(std::size_t place) const;
+    // far, and all numbers are finite. index: in the list of takePaths().
+    bool isGood(std::size_t index) const;
     // Accepts that result.
-    void accept(KeptId id, std::size_t place);
+    void accept(KeptId id, std::size_t index);
     // Returns the boxes of write(), or those after the last step of the cloth that was accepted since.
     const KeptBoxes& boxes(KeptId id) const { return m_slots[id].m_boxes; }
 
@@ -61,7 +61,7 @@ private:
     };
 
     // Each cloth has two copies of its nodes, one behind the other.
-    cl_uint placeOf(const Slot& slot, std::uint32_t turn) const
+    cl_uint firstNodeOf(const Slot& slot, std::uint32_t turn) const
     {
         return cl_uint(2 * slot.m_first + turn * slot.m_room);
     }

@@ -6,11 +6,11 @@
 
 namespace drape
 {
-// Lists the rows of the cloth whose places are in m_placeOf: those beside resting bodies by node, then the others.
-// Anchors go first, and rows of a kind stay in order.
+// Lists the rows of the cloth whose packed indices are in m_packedIndex: those beside resting bodies by node, then the
+// others. Anchors go first, and rows of a kind stay in order.
 PackedRigid::Rows PackedRigid::sortedRows(const RigidRows& rigid) const
 {
-    std::vector<bool> isInTurn(m_placeOf.size(), false);
+    std::vector<bool> isInTurn(m_packedIndex.size(), false);
     for (const RigidAnchor& anchor : rigid.anchors())
         if (m_bodies[anchor.m_body].m_moves) isInTurn[anchor.m_node] = true;
     for (const RigidContact& contact : rigid.contacts())
@@ -21,21 +21,22 @@ PackedRigid::Rows PackedRigid::sortedRows(const RigidRows& rigid) const
         for (std::size_t i = 0; i < list.size(); ++i)
         {
             const std::uint32_t node = list[i].m_node;
-            rows.push_back({isInTurn[node] ? kInTurn : m_placeOf[node], areContacts, std::uint32_t(i)});
+            rows.push_back({isInTurn[node] ? kInTurn : m_packedIndex[node], areContacts, std::uint32_t(i)});
         }
     };
     add(rigid.anchors(), false);
     add(rigid.contacts(), true);
-    std::stable_sort(rows.begin(), rows.end(), [](const Row& a, const Row& b) { return a.m_place < b.m_place; });
+    std::stable_sort(rows.begin(), rows.end(),
+                     [](const Row& a, const Row& b) { return a.m_packedNode < b.m_packedNode; });
     return rows;
 }
 
-// Packs rows of the cloth whose places are in m_placeOf as one run.
+// Packs rows of the cloth whose packed indices are in m_packedIndex as one run.
 void PackedRigid::packRun(std::size_t turn, const RigidRows& rigid, const Row* first, const Row* last)
 {
     const auto add = [this](auto& list, auto row)
     {
-        row.m_node = m_placeOf[row.m_node];
+        row.m_node = m_packedIndex[row.m_node];
         list.push_back(row);
     };
     RigidRun run = {};
@@ -63,14 +64,14 @@ void PackedRigid::packRuns(std::size_t turn, const RigidRows& rigid, bool inTurn
     for (const Row* row = rows.data(); row != end;)
     {
         const Row* const last =
-            std::find_if(row, end, [row](const Row& other) { return other.m_place != row->m_place; });
-        if ((row->m_place == kInTurn) == inTurn) packRun(turn, rigid, row, last);
+            std::find_if(row, end, [row](const Row& other) { return other.m_packedNode != row->m_packedNode; });
+        if ((row->m_packedNode == kInTurn) == inTurn) packRun(turn, rigid, row, last);
         row = last;
     }
 }
 
 void PackedRigid::pack(const std::vector<SolverCloth>& cloths, const std::vector<SolveCloth>& records,
-                       const std::vector<std::uint32_t>& places)
+                       const std::vector<std::uint32_t>& nodeOrder)
 {
     m_chains.clear();
     m_runs.clear();
@@ -93,9 +94,9 @@ void PackedRigid::pack(const std::vector<SolverCloth>& cloths, const std::vector
         {
             const RigidRows& rigid = *cloths[m_turns[turn]].m_rigid;
             const SolveRange nodes = records[m_turns[turn]].m_nodes;
-            m_placeOf.resize(nodes.m_count);
+            m_packedIndex.resize(nodes.m_count);
             for (std::uint32_t i = 0; i < nodes.m_count; ++i)
-                m_placeOf[places[nodes.m_first + i] - nodes.m_first] = i;
+                m_packedIndex[nodeOrder[nodes.m_first + i] - nodes.m_first] = i;
             packRuns(turn, rigid, inTurn);
             if (inTurn) m_given.push_back(rigid.given());
         }
@@ -110,31 +111,31 @@ void PackedRigid::pack(const std::vector<SolverCloth>& cloths, const std::vector
     m_layout.m_anchorCount = std::uint32_t(m_anchors.size());
 }
 
-void PackedRigid::layOutInput(WordPlaces& places)
+void PackedRigid::layOutInput(WordOffsets& offsets)
 {
-    m_layout.m_chains = places.add<RigidChain>(m_chains.size());
-    m_layout.m_runs = places.add<RigidRun>(m_runs.size());
-    m_layout.m_anchors = places.add<RigidAnchor>(m_anchors.size());
-    m_layout.m_contacts = places.add<RigidContact>(m_contacts.size());
-    m_layout.m_bodiesBefore = places.add<RigidBody>(m_bodies.size());
-    m_layout.m_givenBefore = places.add<RigidGiven>(m_given.size());
+    m_layout.m_chains = offsets.add<RigidChain>(m_chains.size());
+    m_layout.m_runs = offsets.add<RigidRun>(m_runs.size());
+    m_layout.m_anchors = offsets.add<RigidAnchor>(m_anchors.size());
+    m_layout.m_contacts = offsets.add<RigidContact>(m_contacts.size());
+    m_layout.m_bodiesBefore = offsets.add<RigidBody>(m_bodies.size());
+    m_layout.m_givenBefore = offsets.add<RigidGiven>(m_given.size());
 }
 
-void PackedRigid::layOutStates(WordPlaces& places)
+void PackedRigid::layOutStates(WordOffsets& offsets)
 {
-    m_layout.m_states = places.add<RigidRowState>(m_anchors.size() + m_contacts.size());
+    m_layout.m_states = offsets.add<RigidRowState>(m_anchors.size() + m_contacts.size());
 }
 
-void PackedRigid::layOutResults(WordPlaces& places)
+void PackedRigid::layOutResults(WordOffsets& offsets)
 {
-    m_layout.m_bodies = places.add<RigidBody>(m_bodies.size());
-    m_layout.m_given = places.add<RigidGiven>(m_given.size());
+    m_layout.m_bodies = offsets.add<RigidBody>(m_bodies.size());
+    m_layout.m_given = offsets.add<RigidGiven>(m_given.size());
 }
 
 void PackedRigid::copyTo(SolveInputWord* words) const
 {
-    const auto copy = [words](std::uint32_t place, const auto& list)
-    { copyToWords(words, place, list.data(), list.size()); };
+    const auto copy = [words](std::uint32_t offset, const auto& list)
+    { copyToWords(words, offset, list.data(), list.size()); };
     copy(m_layout.m_chains, m_chains);
     copy(m_layout.m_runs, m_runs);
     copy(m_layout.m_anchors, m_anchors);

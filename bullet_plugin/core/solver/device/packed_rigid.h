@@ -13,7 +13,7 @@
 #include "kernels/shared/rigid.h"
 #include "kernels/shared/solve_step.h"
 #include "bullet_plugin/core/solver/solver_cloth.h"
-#include "word_places.h"
+#include "word_offsets.h"
 
 namespace drape
 {
@@ -27,26 +27,26 @@ public:
         return movingRows <= std::max(std::size_t(64), nodes / 128);
     }
 
-    // Packs the rows of cloths that are packed as `records`. places: by node over all cloths, its place in the caller's
-    // order.
+    // Packs the rows of cloths that are packed as `records`. nodeOrder: by node over all cloths, its index in the
+    // caller's order.
     void pack(const std::vector<SolverCloth>& cloths, const std::vector<SolveCloth>& records,
-              const std::vector<std::uint32_t>& places);
+              const std::vector<std::uint32_t>& nodeOrder);
     bool empty() const { return m_chains.empty(); }
     const RigidLayout& layout() const { return m_layout; }
 
     // Lay out arrays in the input, in the part of the working memory that begins as 0, and in that which is read back.
-    void layOutInput(WordPlaces& places);
-    void layOutStates(WordPlaces& places);
-    void layOutResults(WordPlaces& places);
+    void layOutInput(WordOffsets& offsets);
+    void layOutStates(WordOffsets& offsets);
+    void layOutResults(WordOffsets& offsets);
     void copyTo(SolveInputWord* words) const;
     // Hands a cloth's rows what they gave. words: what layOutResults() placed, as if from the working memory's start.
     void unpack(std::size_t cloth, RigidRows& rows, const SolveWorkWord* words) const;
 
 private:
-    // A row of a cloth: the place of its node, or kInTurn, and where the cloth has it.
+    // A row of a cloth: the index of its packed node, or kInTurn, and its index in the cloth.
     struct Row
     {
-        std::uint32_t m_place;
+        std::uint32_t m_packedNode;
         bool m_isContact;
         std::uint32_t m_index;
     };
@@ -65,6 +65,6 @@ private:
     std::vector<RigidGiven> m_given;     // by turn
     std::vector<std::uint32_t> m_turns;  // cloths with rows in the host's order
     RigidLayout m_layout = {};
-    std::vector<std::uint32_t> m_placeOf;  // by node of the cloth that is being packed
+    std::vector<std::uint32_t> m_packedIndex;  // by node of the cloth that is being packed
 };
 }  // namespace drape

@@ -5,7 +5,7 @@
 #include "bullet_plugin/core/scene/scene.h"
 #include "bullet_plugin/core/solver/rigid_rows.h"
 #include "bullet_plugin/core/solver/step_solver.h"
-#include "word_places.h"
+#include "word_offsets.h"
 
 namespace drape
 {
@@ -126,7 +126,7 @@ void PackedStep::layOut(const ContactSource& source, SolveStage& stage)
     m_step.m_contacts = source.list();
     m_step.m_onDevice = source.onDevice();
     const std::size_t contacts = m_step.m_onDevice.m_list ? m_step.m_onDevice.m_room : m_step.m_contacts.size();
-    WordPlaces input, work;
+    WordOffsets input, work;
     layout.m_cloths = input.add<SolveCloth>(cloths);
     layout.m_givenPaths = input.add<NodePath>(nodes);
     layout.m_givenAccelerations = input.add<Vec3>(nodes);
@@ -231,7 +231,7 @@ void PackedStep::pack(const std::vector<SolverCloth>& cloths, const ContactSourc
         m_obstacles.push_back(source.scene()->m_obstacles.begin(slot));
     for (std::size_t i = 0; i < m_cloths.size(); ++i)
         packCloth(i, source, stage);
-    m_rigid.pack(m_cloths, m_clothRecords, m_topology.places());
+    m_rigid.pack(m_cloths, m_clothRecords, m_topology.nodeOrder());
     packKept(stage);
     layOut(source, stage);
     describeLaunches();
@@ -242,13 +242,13 @@ void PackedStep::unpackNodes(std::size_t cloth, const SolveWorkWord* words) cons
     const SolveLayout& layout = m_step.m_layout;
     const auto* const ends = reinterpret_cast<const SolverNode*>(words + (layout.m_nodes - m_step.m_clearedWords));
     const auto* const states = reinterpret_cast<const NodeState*>(words + (layout.m_states - m_step.m_clearedWords));
-    const std::vector<std::uint32_t>& places = m_topology.places();
+    const std::vector<std::uint32_t>& nodeOrder = m_topology.nodeOrder();
     SolverNodes& nodes = m_cloths[cloth].m_contacts->m_nodes;
     const std::size_t first = m_clothRecords[cloth].m_nodes.m_first;
-    for (std::size_t place = first; place < first + nodes.count(); ++place)
+    for (std::size_t i = first; i < first + nodes.count(); ++i)
     {
-        nodes.nodes()[places[place] - first] = ends[place];
-        nodes.states()[places[place] - first] = states[place];
+        nodes.nodes()[nodeOrder[i] - first] = ends[i];
+        nodes.states()[nodeOrder[i] - first] = states[i];
     }
 }
 
@@ -268,15 +268,15 @@ void PackedStep::unpack(const SolveWorkWord* words, SolveStage& stage, bool behi
     bool areMovedSolved = true;
     for (std::size_t i = 0; i < m_cloths.size(); ++i)
         areMovedSolved = areMovedSolved && (isSolved(i, results[i], behind) || !moves(i));
-    std::size_t kept = 0;  // place among kept cloths
+    std::size_t kept = 0;  // index among kept cloths
     for (std::size_t i = 0; i < m_cloths.size(); ++i)
     {
         const KeptStep* const step = m_cloths[i].m_kept;
-        const std::size_t place = step ? kept++ : 0;
+        const std::size_t keptIndex = step ? kept++ : 0;
         if (!isSolved(i, results[i], behind) || (!areMovedSolved && moves(i))) continue;
-        if (step && !stage.kept().isGood(place)) continue;
+        if (step && !stage.kept().isGood(keptIndex)) continue;
         if (step)
-            stage.kept().accept(step->m_id, place);
+            stage.kept().accept(step->m_id, keptIndex);
         else
             unpackNodes(i, words);
         if (m_cloths[i].m_rigid) m_rigid.unpack(i, *m_cloths[i].m_rigid, work);

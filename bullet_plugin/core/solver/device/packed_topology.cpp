@@ -6,7 +6,7 @@
 #include "bullet_plugin/core/scene/mesh_pool.h"
 #include "bullet_plugin/core/solver/host/substeps.h"
 #include "kernels/lib/ordering/feature_index.h"
-#include "word_places.h"
+#include "word_offsets.h"
 
 namespace drape
 {
@@ -59,7 +59,7 @@ void PackedTopology::pack(const std::vector<SolverCloth>& cloths, const MeshPool
     m_linkBatches.clear();
     m_groups.clear();
     for (std::vector<std::uint32_t>* list :
-         {&m_levelGroups, &m_faceLists, &m_facesOfNode, &m_faces, &m_places, &m_bucketCloths})
+         {&m_levelGroups, &m_faceLists, &m_facesOfNode, &m_faces, &m_nodeOrder, &m_bucketCloths})
         list->clear();
     const std::size_t features =
         meshes ? meshes->vertexCount() + meshes->triangles().size() + meshes->edges().size() : std::size_t(0);
@@ -76,13 +76,13 @@ void PackedTopology::packCloth(const SolverCloth& cloth, const MeshPool* meshes)
 {
     const ClothContacts& contacts = *cloth.m_contacts;
     const ClothParts& parts = *contacts.m_parts;
-    const std::size_t firstGroup = m_groups.size(), firstNode = m_places.size();
+    const std::size_t firstGroup = m_groups.size(), firstNode = m_nodeOrder.size();
     m_cloths.push_back({std::uint32_t(firstNode), std::uint32_t(m_faceLists.size()), std::uint32_t(firstGroup)});
-    std::vector<std::uint32_t> placeOf(parts.nodeCount());
+    std::vector<std::uint32_t> packedIndex(parts.nodeCount());
     for (std::size_t i = 0; i < parts.nodeCount(); ++i)
     {
-        placeOf[std::size_t(parts.order()[i])] = std::uint32_t(i);
-        m_places.push_back(std::uint32_t(firstNode + std::size_t(parts.order()[i])));
+        packedIndex[std::size_t(parts.order()[i])] = std::uint32_t(i);
+        m_nodeOrder.push_back(std::uint32_t(firstNode + std::size_t(parts.order()[i])));
     }
     m_groups.resize(firstGroup + parts.groupCount() - 1);
     for (std::size_t group = 1; group < parts.groupCount(); ++group)
@@ -95,12 +95,12 @@ void PackedTopology::packCloth(const SolverCloth& cloth, const MeshPool* meshes)
         packed.m_nodes = {std::uint32_t(parts.firstNode(leaf)),
                           std::uint32_t(parts.firstNode(leaf + 1) - parts.firstNode(leaf))};
     }
-    packLinks(cloth.m_substeps->links(), placeOf, firstGroup);
-    packFaces(*contacts.m_limit.faces(), parts, placeOf);
-    if (meshes && contacts.m_order) packFeatures(contacts, *meshes, placeOf, firstGroup);
+    packLinks(cloth.m_substeps->links(), packedIndex, firstGroup);
+    packFaces(*contacts.m_limit.faces(), parts, packedIndex);
+    if (meshes && contacts.m_order) packFeatures(contacts, *meshes, packedIndex, firstGroup);
 }
 
-void PackedTopology::packLinks(const LinkSweep& links, const std::vector<std::uint32_t>& placeOf,
+void PackedTopology::packLinks(const LinkSweep& links, const std::vector<std::uint32_t>& packedIndex,
                                std::size_t firstGroup)
 {
     const std::size_t groups = m_groups.size() - firstGroup;
@@ -124,12 +124,13 @@ void PackedTopology::packLinks(const LinkSweep& links, const std::vector<std::ui
     m_links.resize(firsts.back());
     links.forLinks(
         [&](std::uint32_t group, std::uint32_t colour, const std::uint32_t* nodes, float restSquared, float strength) {
-            m_links[firsts[keyOf(group, colour)]++] = {{placeOf[nodes[0]], placeOf[nodes[1]]}, restSquared, strength};
+            m_links[firsts[keyOf(group, colour)]++] = {
+                {packedIndex[nodes[0]], packedIndex[nodes[1]]}, restSquared, strength};
         });
 }
 
 void PackedTopology::packFaces(const ClothFaces& faces, const ClothParts& parts,
-                               const std::vector<std::uint32_t>& placeOf)
+                               const std::vector<std::uint32_t>& packedIndex)
 {
     const std::uint32_t firstFace = std::uint32_t(m_faces.size() / 3);
     for (std::size_t i = 0; i < parts.nodeCount(); ++i)
@@ -142,11 +143,11 @@ void PackedTopology::packFaces(const ClothFaces& faces, const ClothParts& parts,
     }
     m_faceLists.push_back(std::uint32_t(m_facesOfNode.size()));
     for (const std::int32_t node : faces.triangles())
-        m_faces.push_back(node >= 0 && std::size_t(node) < placeOf.size() ? placeOf[std::size_t(node)] : 0);
+        m_faces.push_back(node >= 0 && std::size_t(node) < packedIndex.size() ? packedIndex[std::size_t(node)] : 0);
 }
 
 void PackedTopology::packFeatures(const ClothContacts& contacts, const MeshPool& meshes,
-                                  const std::vector<std::uint32_t>& placeOf, std::size_t firstGroup)
+                                  const std::vector<std::uint32_t>& packedIndex, std::size_t firstGroup)
 {
     const FeatureOrder& order = *contacts.m_order;
     for (const OrderedFeature& feature : order.features())
@@ -173,7 +174,7 @@ void PackedTopology::packFeatures(const ClothContacts& contacts, const MeshPool&
         if (feature.m_kind != kNodeFeature) packed.m_bucket += group.m_nodeBuckets;
         if (feature.m_kind == kEdgeFeature) packed.m_bucket += group.m_faceBuckets;
         for (int k = 0; k < 3 && feature.m_nodes[k] >= 0; ++k)
-            packed.m_nodes[k] = placeOf[std::size_t(feature.m_nodes[k])];
+            packed.m_nodes[k] = packedIndex[std::size_t(feature.m_nodes[k])];
         std::size_t index = first.m_vertex + i;
         std::uint32_t kind = DRAPE_NODE_FACE;
         if (i >= order.firstEdge())
@@ -236,24 +237,24 @@ void PackedTopology::listGroups(const std::vector<SolverCloth>& cloths)
 
 void PackedTopology::layOut()
 {
-    WordPlaces places;
+    WordOffsets offsets;
     SolveLayout& layout = m_layout;
     layout = {};
-    layout.m_nodeCount = std::uint32_t(m_places.size());
+    layout.m_nodeCount = std::uint32_t(m_nodeOrder.size());
     layout.m_bucketCount = std::uint32_t(m_bucketCloths.size());
-    layout.m_links = places.add<SolveLink>(m_links.size());
-    layout.m_linkBatches = places.add<SolveBatch>(m_linkBatches.size());
-    layout.m_groups = places.add<SolveGroup>(m_groups.size());
-    layout.m_levelGroups = places.add<std::uint32_t>(m_levelGroups.size());
-    layout.m_faceLists = places.add<std::uint32_t>(m_faceLists.size());
-    layout.m_facesOfNode = places.add<std::uint32_t>(m_facesOfNode.size());
-    layout.m_faces = places.add<std::uint32_t>(m_faces.size());
-    layout.m_places = places.add<std::uint32_t>(m_places.size());
-    layout.m_features = places.add<SolveFeature>(m_features.size());
-    layout.m_bucketCloths = places.add<std::uint32_t>(m_bucketCloths.size());
-    m_words.assign(places.words(), SolveTopologyWord());
-    const auto copy = [this](std::uint32_t place, const auto& list)
-    { copyToWords(m_words.data(), place, list.data(), list.size()); };
+    layout.m_links = offsets.add<SolveLink>(m_links.size());
+    layout.m_linkBatches = offsets.add<SolveBatch>(m_linkBatches.size());
+    layout.m_groups = offsets.add<SolveGroup>(m_groups.size());
+    layout.m_levelGroups = offsets.add<std::uint32_t>(m_levelGroups.size());
+    layout.m_faceLists = offsets.add<std::uint32_t>(m_faceLists.size());
+    layout.m_facesOfNode = offsets.add<std::uint32_t>(m_facesOfNode.size());
+    layout.m_faces = offsets.add<std::uint32_t>(m_faces.size());
+    layout.m_nodeOrder = offsets.add<std::uint32_t>(m_nodeOrder.size());
+    layout.m_features = offsets.add<SolveFeature>(m_features.size());
+    layout.m_bucketCloths = offsets.add<std::uint32_t>(m_bucketCloths.size());
+    m_words.assign(offsets.words(), SolveTopologyWord());
+    const auto copy = [this](std::uint32_t offset, const auto& list)
+    { copyToWords(m_words.data(), offset, list.data(), list.size()); };
     copy(layout.m_links, m_links);
     copy(layout.m_linkBatches, m_linkBatches);
     copy(layout.m_groups, m_groups);
@@ -261,7 +262,7 @@ void PackedTopology::layOut()
     copy(layout.m_faceLists, m_faceLists);
     copy(layout.m_facesOfNode, m_facesOfNode);
     copy(layout.m_faces, m_faces);
-    copy(layout.m_places, m_places);
+    copy(layout.m_nodeOrder, m_nodeOrder);
     copy(layout.m_features, m_features);
     copy(layout.m_bucketCloths, m_bucketCloths);
 }

@@ -2,7 +2,7 @@
 // of each feature belong (kernels/shared/solve_step.h).
 //
 // Nodes are sorted by the leaves of their cloth's parts. Packing costs time in proportion to the cloths, and is needed
-// when one of them or its place among the pipeline's meshes changed.
+// when one of them or its position among the pipeline's meshes changed.
 #pragma once
 
 #include <cstdint>
@@ -38,17 +38,17 @@ public:
     // Differs from that of all other packed data.
     std::uint64_t revision() const { return m_revision; }
 
-    // Sets the layout's numbers and its places in the topology.
+    // Sets the layout's numbers and its offsets in the topology.
     void describe(SolveLayout& layout) const { layout = m_layout; }
     const std::vector<SolveTopologyWord>& words() const { return m_words; }
     // First node of a cloth, and where its nodes' lists of faces are.
     std::uint32_t firstNode(std::size_t cloth) const { return m_cloths[cloth].m_firstNode; }
     std::uint32_t faceLists(std::size_t cloth) const { return m_cloths[cloth].m_faceLists; }
-    std::size_t nodeCount() const { return m_places.size(); }
+    std::size_t nodeCount() const { return m_nodeOrder.size(); }
     std::size_t linkCount() const { return m_links.size(); }
     std::size_t bucketCount() const { return m_bucketCloths.size(); }
-    // By node, its place in the caller's order.
-    const std::vector<std::uint32_t>& places() const { return m_places; }
+    // By node, its index in the caller's order.
+    const std::vector<std::uint32_t>& nodeOrder() const { return m_nodeOrder; }
 
     // The groups of cloths with one leaf, small ones first, and those of large cloths from the leaves on.
     SolveRange small() const { return m_small; }
@@ -56,7 +56,7 @@ public:
     const std::vector<Level>& levels() const { return m_levels; }
 
 private:
-    // Revisions of a cloth's links, faces, order and parts, and its places among the pipeline's meshes.
+    // Revisions of a cloth's links, faces, order and parts, and its positions among the pipeline's meshes.
     struct Key
     {
         std::uint64_t m_links, m_faces, m_order, m_parts;
@@ -71,10 +71,10 @@ private:
 
     static Key keyOf(const SolverCloth& cloth, const MeshPool* meshes);
     void packCloth(const SolverCloth& cloth, const MeshPool* meshes);
-    void packLinks(const LinkSweep& links, const std::vector<std::uint32_t>& placeOf, std::size_t firstGroup);
-    void packFaces(const ClothFaces& faces, const ClothParts& parts, const std::vector<std::uint32_t>& placeOf);
-    void packFeatures(const ClothContacts& contacts, const MeshPool& meshes, const std::vector<std::uint32_t>& placeOf,
-                      std::size_t firstGroup);
+    void packLinks(const LinkSweep& links, const std::vector<std::uint32_t>& packedIndex, std::size_t firstGroup);
+    void packFaces(const ClothFaces& faces, const ClothParts& parts, const std::vector<std::uint32_t>& packedIndex);
+    void packFeatures(const ClothContacts& contacts, const MeshPool& meshes,
+                      const std::vector<std::uint32_t>& packedIndex, std::size_t firstGroup);
     void listGroups(const std::vector<SolverCloth>& cloths);
     void layOut();
 
@@ -84,7 +84,7 @@ private:
     std::vector<SolveLink> m_links;
     std::vector<SolveBatch> m_linkBatches;
     std::vector<SolveGroup> m_groups;
-    std::vector<std::uint32_t> m_levelGroups, m_faceLists, m_facesOfNode, m_faces, m_places, m_bucketCloths;
+    std::vector<std::uint32_t> m_levelGroups, m_faceLists, m_facesOfNode, m_faces, m_nodeOrder, m_bucketCloths;
     std::vector<SolveFeature> m_features;
     std::vector<SolveTopologyWord> m_words;
     SolveLayout m_layout = {};

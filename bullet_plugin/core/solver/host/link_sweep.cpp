@@ -101,9 +101,9 @@ void LinkSweep::build(std::size_t nodeCount, std::size_t leafCount, const std::v
                      [&](std::uint32_t a, std::uint32_t b) { return links[a].m_group < links[b].m_group; });
     const std::vector<std::uint32_t> colours = coloursOf(links, order, nodeCount);
     m_isNew = true;
-    m_places.resize(links.size());
+    m_batchOf.resize(links.size());
     for (std::size_t link = 0; link < links.size(); ++link)
-        m_places[link] = {links[link].m_group, colours[link]};
+        m_batchOf[link] = {links[link].m_group, colours[link]};
     const auto keyOf = [&](std::uint32_t link) { return std::make_tuple(links[link].m_group, colours[link]); };
     std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return keyOf(a) < keyOf(b); });
     m_blocks.clear();

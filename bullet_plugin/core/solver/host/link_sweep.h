@@ -64,7 +64,7 @@ public:
             const Block& block = m_blocks[m_laneOf[link] / kWidth];
             const std::size_t lane = m_laneOf[link] % kWidth;
             const std::uint32_t nodes[2] = {block.m_first[lane], block.m_second[lane]};
-            visit(m_places[link].m_group, m_places[link].m_colour, nodes, block.m_restSquared[lane],
+            visit(m_batchOf[link].m_group, m_batchOf[link].m_colour, nodes, block.m_restSquared[lane],
                   block.m_strength[lane]);
         }
     }
@@ -85,7 +85,7 @@ private:
         float m_apart[3][kWidth], m_restSquared[kWidth], m_strength[kWidth];
     };
 
-    struct Place
+    struct Batch
     {
         std::uint32_t m_group, m_colour;
     };
@@ -97,7 +97,7 @@ private:
     std::vector<Block> m_blocks;
     std::vector<std::size_t> m_firsts;    // by group, the first of its blocks; then the end
     std::vector<std::uint32_t> m_laneOf;  // by link, its lane over all blocks
-    std::vector<Place> m_places;          // by link
+    std::vector<Batch> m_batchOf;         // by link
     std::uint64_t m_revision = 0;
     bool m_isNew = true;
     std::size_t m_leafCount = 1;

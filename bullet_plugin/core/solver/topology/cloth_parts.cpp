@@ -11,23 +11,23 @@ namespace drape
 {
 namespace
 {
-float along(const Vec3& place, int axis)
+float along(const Vec3& position, int axis)
 {
-    return axis == 0 ? place.x : axis == 1 ? place.y : place.z;
+    return axis == 0 ? position.x : axis == 1 ? position.y : position.z;
 }
 
 // Bisects ranges of a node order along their longest axis.
 class Bisection
 {
 public:
-    Bisection(const std::vector<Vec3>& places, std::vector<int>& order) : m_places(places), m_order(order) {}
+    Bisection(const std::vector<Vec3>& positions, std::vector<int>& order) : m_positions(positions), m_order(order) {}
 
     void halve(std::size_t first, std::size_t last)
     {
         const int axis = longestAxis(first, last);
         const auto before = [&](int a, int b)
         {
-            const float x = along(place(a), axis), y = along(place(b), axis);
+            const float x = along(position(a), axis), y = along(position(b), axis);
             return x < y || (x == y && a < b);  // a total order, whichever library sorts
         };
         const auto at = [&](std::size_t i) { return m_order.begin() + static_cast<std::ptrdiff_t>(i); };
@@ -37,37 +37,37 @@ public:
     static std::size_t middle(std::size_t first, std::size_t last) { return first + (last - first) / 2; }
 
 private:
-    const Vec3& place(int node) const { return m_places[static_cast<std::size_t>(node)]; }
+    const Vec3& position(int node) const { return m_positions[static_cast<std::size_t>(node)]; }
 
     int longestAxis(std::size_t first, std::size_t last) const
     {
         if (first == last) return 0;
-        Vec3 low = place(m_order[first]), high = low;
+        Vec3 low = position(m_order[first]), high = low;
         for (std::size_t i = first; i < last; ++i)
         {
-            low = vec3Least(low, place(m_order[i]));
-            high = vec3Most(high, place(m_order[i]));
+            low = vec3Least(low, position(m_order[i]));
+            high = vec3Most(high, position(m_order[i]));
         }
         const Vec3 size = vec3Sub(high, low);
         if (size.x < size.y) return size.y < size.z ? 2 : 1;
         return size.x < size.z ? 2 : 0;
     }
 
-    const std::vector<Vec3>& m_places;
+    const std::vector<Vec3>& m_positions;
     std::vector<int>& m_order;
 };
 }  // namespace
 
-void ClothParts::cut(std::vector<Vec3> places)
+void ClothParts::cut(std::vector<Vec3> positions)
 {
-    for (Vec3& place : places)
-        for (float* coordinate : {&place.x, &place.y, &place.z})
+    for (Vec3& position : positions)
+        for (float* coordinate : {&position.x, &position.y, &position.z})
             if (!std::isfinite(*coordinate)) *coordinate = 0;
-    m_order.resize(places.size());
+    m_order.resize(positions.size());
     std::iota(m_order.begin(), m_order.end(), 0);
-    m_firsts = {0, places.size()};
-    Bisection bisection(places, m_order);
-    while (places.size() > kMostNodes * leafCount())
+    m_firsts = {0, positions.size()};
+    Bisection bisection(positions, m_order);
+    while (positions.size() > kMostNodes * leafCount())
     {
         std::vector<std::size_t> finer{0};
         for (std::size_t leaf = 0; leaf < leafCount(); ++leaf)
@@ -78,7 +78,7 @@ void ClothParts::cut(std::vector<Vec3> places)
         }
         m_firsts = finer;
     }
-    m_leafOf.resize(places.size());
+    m_leafOf.resize(positions.size());
     for (std::size_t leaf = 0; leaf < leafCount(); ++leaf)
     {
         const auto begin = m_order.begin() + static_cast<std::ptrdiff_t>(m_firsts[leaf]);

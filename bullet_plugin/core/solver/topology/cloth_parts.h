@@ -26,9 +26,9 @@ public:
     // falls as a whole.
     static constexpr std::size_t kMostNodes = 2048;
 
-    // places: positions of all nodes, m, at rest or at any other time. They determine how well the parts are cut and
+    // positions: of all nodes, m, at rest or at any other time. They determine how well the parts are cut and
     // the order of work. A position that is not a number counts as 0.
-    void cut(std::vector<Vec3> places);
+    void cut(std::vector<Vec3> positions);
 
     // Differs after cut() from that of any other cut.
     std::uint64_t revision() const { return m_revision; }

@@ -8,10 +8,10 @@
 
 namespace drape
 {
-class WordPlaces
+class WordOffsets
 {
 public:
-    // Returns the place of an array of `count` elements.
+    // Returns the offset of an array of `count` elements.
     template <class T>
     std::uint32_t add(std::size_t count)
     {
@@ -28,8 +28,8 @@ private:
 };
 
 template <class Word, class T>
-void copyToWords(Word* words, std::size_t place, const T* source, std::size_t count)
+void copyToWords(Word* words, std::size_t offset, const T* source, std::size_t count)
 {
-    if (count > 0) std::memcpy(words + place, source, count * sizeof(T));
+    if (count > 0) std::memcpy(words + offset, source, count * sizeof(T));
 }
 }  // namespace drape
