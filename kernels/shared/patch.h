@@ -51,8 +51,11 @@ typedef struct Patch
 
 // A feature test that the cull could not drop: a cloth triangle with the test in its upper bits, and an obstacle
 // lane. Lanes are of faces (tests 0 to 2: corner of the cloth triangle), vertices (3) or edges (4 to 6: edge of the
-// cloth triangle). The record also stores a pair of a cloth triangle and a patch, with the patch's index in place of
-// the lane, and a pair of features of one cloth (lib/cloth_cloth/self_contact.h).
+// cloth triangle).
+//
+// The record also stores a pair of a cloth triangle and a patch: m_lane is the patch then. In a self test
+// (lib/cloth_cloth/self_contact.h) m_cloth and m_lane are the features, m_reach is the cloth's thickness, and m_motion
+// is the test's kind (DRAPE_SELF_TEST_NODE …).
 typedef struct FeatureTest
 {
     DRAPE_UINT m_cloth;

@@ -23,8 +23,7 @@ DRAPE_NAMESPACE_BEGIN
 // Maximum thickness of a pair, as a share of its distance at rest.
 #define DRAPE_REST_SHARE 0.5f
 
-// A self test's kind in FeatureTest::m_motion; its features are in m_cloth and m_lane, the cloth's thickness (m) in
-// m_reach.
+// A self test's kind, in FeatureTest::m_motion.
 #define DRAPE_SELF_TEST_NODE 0u
 #define DRAPE_SELF_TEST_EDGE 1u
 
