@@ -120,42 +120,41 @@ void SoftBodySolver::Work::predict(const Bodies& bodies, btScalar dt)
     }
 }
 
-// Runs the part of predictMotion() before the prediction.
-void SoftBodySolver::beginStep(btScalar dt, std::vector<StepObstacle>& obstacles)
+void SoftBodySolver::Work::beginStep(btScalar dt, std::vector<StepObstacle>& obstacles)
 {
-    m_work->m_listed = false;
-    m_work->m_taken.clear();
-    m_state->dropNotes(this);  // notes of a dispatch that no solve followed
-    m_state->setStepped(this, m_softBodySet);
-    if (!m_state->ready()) return listPredicted();
-    m_state->m_kept.forgetRemoved(this, m_softBodySet);
+    m_listed = false;
+    m_taken.clear();
+    m_state.dropNotes(&m_owner);  // notes of a dispatch that no solve followed
+    m_state.setStepped(&m_owner, m_bodies);
+    if (!m_state.ready()) return listPredicted();
+    m_state.m_kept.forgetRemoved(&m_owner, m_bodies);
     Stopwatch watch;
-    KinematicMotions& motions = m_state->motionsOf(this);
+    KinematicMotions& motions = m_state.motionsOf(&m_owner);
     listTaken();
     motions.beginStep(dt, [this](const btCollisionObject& object, const btTransform& map, btScalar slack)
-                      { return m_state->movedAlong(m_work->m_taken, object, map, slack); });
+                      { return m_state.movedAlong(m_taken, object, map, slack); });
     obstacles = wakeReached(motions);
     listPredicted();
-    m_work->m_parts.m_mirrorMs = watch.lapMs();
+    m_parts.m_mirrorMs = watch.lapMs();
     reserveSubsteps();
-    m_work->m_parts.m_readMs = watch.lapMs();
+    m_parts.m_readMs = watch.lapMs();
 }
 
 // Prepares the bodies whose links Drape solves in the coming step, and forgets all others.
-void SoftBodySolver::reserveSubsteps()
+void SoftBodySolver::Work::reserveSubsteps()
 {
-    auto& all = m_work->m_substeps;
+    auto& all = m_substeps;
     std::size_t solved = 0;
-    const std::vector<const btSoftBody*> before = std::move(m_work->m_byBullet);
-    std::vector<const btSoftBody*>& byBullet = m_work->m_byBullet;
+    const std::vector<const btSoftBody*> before = std::move(m_byBullet);
+    std::vector<const btSoftBody*>& byBullet = m_byBullet;
     byBullet.clear();
-    for (int i = 0; i < m_softBodySet.size(); ++i)
+    for (int i = 0; i < m_bodies.size(); ++i)
     {
-        const btSoftBody& body = *m_softBodySet[i];
+        const btSoftBody& body = *m_bodies[i];
         auto at = all.find(&body);
         const bool wasByBullet = std::binary_search(before.begin(), before.end(), &body);
         // Sleeping bodies are not examined: a world at rest may have thousands.
-        const bool isSolved = body.isActive() ? !reasonFromSettings(*m_state, body) : at != all.end();
+        const bool isSolved = body.isActive() ? !reasonFromSettings(m_state, body) : at != all.end();
         if (isSolved && at == all.end())
         {
             at = all.emplace(&body, std::make_unique<SubstepBody>()).first;
@@ -177,54 +176,54 @@ void SoftBodySolver::reserveSubsteps()
 }
 
 // Forgets bodies that are not in the world any more.
-void SoftBodySolver::forgetRemoved()
+void SoftBodySolver::Work::forgetRemoved()
 {
     std::vector<const btSoftBody*> bodies;
-    for (int i = 0; i < m_softBodySet.size(); ++i)
-        bodies.push_back(m_softBodySet[i]);
+    for (int i = 0; i < m_bodies.size(); ++i)
+        bodies.push_back(m_bodies[i]);
     std::sort(bodies.begin(), bodies.end());
-    auto& all = m_work->m_substeps;
+    auto& all = m_substeps;
     for (auto at = all.begin(); at != all.end();)
         at = std::binary_search(bodies.begin(), bodies.end(), at->first) ? std::next(at) : all.erase(at);
 }
 
 // Lists the bodies that Drape takes.
-void SoftBodySolver::listTaken()
+void SoftBodySolver::Work::listTaken()
 {
-    m_work->m_taken.clear();
-    for (int i = 0; i < m_softBodySet.size(); ++i)
-        if (handlesCloth(*m_state, *m_softBodySet[i])) m_work->m_taken.push_back(m_softBodySet[i]);
+    m_taken.clear();
+    for (int i = 0; i < m_bodies.size(); ++i)
+        if (handlesCloth(m_state, *m_bodies[i])) m_taken.push_back(m_bodies[i]);
 }
 
 // Wakes bodies that a moving obstacle reaches. Returns the obstacles of the step, without resting ones if no such
 // body is awake.
-std::vector<StepObstacle> SoftBodySolver::wakeReached(KinematicMotions& motions)
+std::vector<StepObstacle> SoftBodySolver::Work::wakeReached(KinematicMotions& motions)
 {
-    const std::vector<btSoftBody*>& taken = m_work->m_taken;
+    const std::vector<btSoftBody*>& taken = m_taken;
     if (taken.empty()) return {};
     const bool anyAwake =
         std::any_of(taken.begin(), taken.end(), [](const btSoftBody* body) { return body->isActive(); });
-    std::vector<StepObstacle> obstacles = stepObstacles(*m_state, *taken[0], motions, anyAwake);
+    std::vector<StepObstacle> obstacles = stepObstacles(m_state, *taken[0], motions, anyAwake);
     bool anyWoken = false;
     for (btSoftBody* body : taken)
     {
-        if (body->isActive() || !isReached(*m_state, *body, obstacles)) continue;
+        if (body->isActive() || !isReached(m_state, *body, obstacles)) continue;
         body->activate();
         anyWoken = true;
     }
-    return anyWoken && !anyAwake ? stepObstacles(*m_state, *taken[0], motions, true) : obstacles;
+    return anyWoken && !anyAwake ? stepObstacles(m_state, *taken[0], motions, true) : obstacles;
 }
 
 // Lists the bodies that were predicted. Bullet's islands and callbacks may wake cloth, or put it to sleep, before it
 // is solved. Predicted bodies are solved with the contacts along their paths; others wait for the next step.
-void SoftBodySolver::listPredicted()
+void SoftBodySolver::Work::listPredicted()
 {
-    std::vector<const btSoftBody*>& predicted = m_work->m_predicted;
+    std::vector<const btSoftBody*>& predicted = m_predicted;
     predicted.clear();
-    for (int i = 0; i < m_softBodySet.size(); ++i)
-        if (m_softBodySet[i]->isActive()) predicted.push_back(m_softBodySet[i]);
+    for (int i = 0; i < m_bodies.size(); ++i)
+        if (m_bodies[i]->isActive()) predicted.push_back(m_bodies[i]);
     std::sort(predicted.begin(), predicted.end());
-    m_work->m_listed = true;
-    m_work->m_asleep = static_cast<std::size_t>(m_softBodySet.size()) - predicted.size();
+    m_listed = true;
+    m_asleep = static_cast<std::size_t>(m_bodies.size()) - predicted.size();
 }
 }  // namespace drape

@@ -1,7 +1,7 @@
 // The data that a SoftBodySolver keeps from step to step, and the parts of a step that go over all bodies.
 //
-// The order of a step is in soft_body_solver.cpp, its begin with the prediction in solver_begin.cpp. What the core's
-// solver takes of the bodies is in solver_work.cpp.
+// The order of a step is in solver_step.cpp, its begin with the prediction in solver_begin.cpp. What the core's solver
+// takes of the bodies is in solver_work.cpp.
 #pragma once
 
 #include <algorithm>
@@ -21,14 +21,18 @@
 
 namespace drape
 {
+class KinematicMotions;
+struct StepObstacle;
+
 // Working data kept from step to step.
 struct SoftBodySolver::Work
 {
     using Bodies = btAlignedObjectArray<btSoftBody*>;
 
-    Work(PluginState& state, const btSoftBodySolver& owner)
+    Work(PluginState& state, const btSoftBodySolver& owner, const Bodies& bodies)
         : m_state(state),
           m_owner(owner),
+          m_bodies(bodies),
           m_threads(state.threads()),
           m_solver(new StepSolver(m_threads)),
           m_failures(state.failures())
@@ -59,6 +63,30 @@ struct SoftBodySolver::Work
     std::size_t substepNodes(const btSoftBody& body) const;
     // Returns the cloth of such a body.
     ClothContacts& clothOf(const btSoftBody& body);
+
+    // The step, in this order. beginStep() is the part of predictMotion() before the prediction.
+    void beginStep(btScalar dt, std::vector<StepObstacle>& obstacles);
+    void solveStep();
+    // Ends a step in which an exception was caught: Bullet solves the bodies that Drape does not handle, and Drape's
+    // cloths stand still. Allocates no memory.
+    void endFailedStep();
+    // Prepares a body for Bullet's collision with an object, which reads the nodes and their tree. The object may have
+    // moved since the step began.
+    void readByBullet(btSoftBody& body, const btCollisionObject& object);
+
+    // Parts of beginStep().
+    void listTaken();
+    std::vector<StepObstacle> wakeReached(KinematicMotions& motions);
+    void listPredicted();
+    void reserveSubsteps();
+    void forgetRemoved();
+
+    // Parts of solveStep().
+    void leaveToBullet();
+    void chooseStage();
+    void detect();
+    void solveBodies();
+    void closeOffPath(const std::vector<BodyContacts*>& bodies);
 
     // Prediction.
     void predict(const Bodies& bodies, btScalar dt);
@@ -100,6 +128,7 @@ struct SoftBodySolver::Work
 
     PluginState& m_state;
     const btSoftBodySolver& m_owner;
+    const Bodies& m_bodies;  // the solver's
     ThreadTeam& m_threads;
     btScalar m_dt = 0;                      // s, of the prediction
     std::unique_ptr<CollisionStep> m_step;  // null until it is needed

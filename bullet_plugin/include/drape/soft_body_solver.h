@@ -12,19 +12,14 @@
 #pragma once
 
 #include <memory>
-#include <vector>
 
 #include "BulletSoftBody/btDefaultSoftBodySolver.h"
 #include "drape/precision.h"
 
 namespace drape
 {
-class KinematicMotions;
 class Plugin;
-struct BodyContacts;
 class PluginState;
-struct StepObstacle;
-struct StepParts;
 
 // Solves the soft bodies of one world. Bullet's m_rcontacts and m_scontacts hold the contacts of Bullet's own pairs
 // only; Plugin::contacts() returns Drape's.
@@ -50,21 +45,6 @@ public:
 
 private:
     struct Work;
-
-    void beginStep(btScalar dt, std::vector<StepObstacle>& obstacles);
-    void listTaken();
-    std::vector<StepObstacle> wakeReached(KinematicMotions& motions);
-    void listPredicted();
-    void reserveSubsteps();
-    void forgetRemoved();
-    void leaveToBullet();
-    void readByBullet(btSoftBody& body, const btCollisionObject& object);
-    void chooseStage();
-    void detect();
-    void solveBodies(StepParts& times);
-    void closeOffPath(const std::vector<BodyContacts*>& bodies);
-    void solveStep();
-    void endFailedStep();
 
     std::shared_ptr<PluginState> m_state;
     std::unique_ptr<Work> m_work;

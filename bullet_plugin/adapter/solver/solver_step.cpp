@@ -1,0 +1,238 @@
+// The order of a step: detection, the solver, and what follows them.
+#include <algorithm>
+
+#include "bullet_plugin/adapter/motion/bounds_guard.h"
+#include "bullet_plugin/adapter/pairs/eligibility.h"
+#include "bullet_plugin/adapter/solver/body_jobs.h"
+#include "bullet_plugin/adapter/solver/body_nodes.h"
+#include "bullet_plugin/adapter/solver/solver_work.h"
+#include "bullet_plugin/core/public_call.h"
+#include "bullet_plugin/core/stopwatch.h"
+
+namespace drape
+{
+namespace
+{
+// Returns the number of elements that the step's memory is proportional to.
+std::size_t elementsOf(const StepStatistics& step)
+{
+    return step.m_clothTriangles + step.m_obstacleTriangles + step.m_contacts +
+           static_cast<std::size_t>(step.m_candidates);
+}
+
+// Ends the body's step at its start, with the velocities that it would have without gravity. Used for cloth with
+// unknown contacts: a cloth at rest passes no resting obstacle. Allocates no memory. contacts: null if none are
+// known.
+void holdStill(btSoftBody& body, const BodyContacts* contacts)
+{
+    const std::size_t count = static_cast<std::size_t>(body.m_nodes.size());
+    const SolverNodes* const nodes = contacts ? &contacts->nodes() : nullptr;
+    const btVector3 fall = body.m_worldInfo->m_gravity * body.m_sst.sdt;
+    for (std::size_t i = 0; i < count; ++i)
+    {
+        btSoftBody::Node& node = body.m_nodes[static_cast<int>(i)];
+        if (nodes)
+        {
+            node.m_v = vectorOf(nodes->pathVector(i)) * body.m_sst.isdt;
+            node.m_q = vectorOf(nodes->start(i));
+        }
+        if (node.m_im > 0) node.m_v -= fall;
+        node.m_x = node.m_q;
+    }
+}
+}  // namespace
+
+// Leaves bodies to Bullet for this step that changed since the prediction, or that touch what Bullet's own algorithms
+// handle.
+void SoftBodySolver::Work::leaveToBullet()
+{
+    std::vector<unsigned char> leaving(static_cast<std::size_t>(m_bodies.size()));
+    const auto sizeOf = [this](std::size_t i)
+    {
+        const btSoftBody& body = *m_bodies[int(i)];
+        return substepsOf(body) ? static_cast<std::size_t>(body.m_nodes.size()) : 0;
+    };
+    const auto check = [&](std::size_t i, ThreadTeam* threads)
+    {
+        const btSoftBody& body = *m_bodies[int(i)];
+        leaving[i] = !substepsOf(body)->canSolveNow(body, threads);
+    };
+    forBodies(leaving.size(), m_state.threads(), sizeOf, check);
+    for (std::size_t i = 0; i < leaving.size(); ++i)
+    {
+        if (!leaving[i]) continue;
+        btSoftBody& body = *m_bodies[int(i)];
+        if (m_state.m_kept.stepOf(body)) bringToHost(body);
+        substepsOf(body)->leave(body);
+    }
+}
+
+// Sets the stage that solves this step's cloths.
+void SoftBodySolver::Work::chooseStage()
+{
+    std::size_t nodes = 0;
+    for (int i = 0; i < m_bodies.size(); ++i)
+        nodes += substepNodes(*m_bodies[i]);
+    if (m_state.m_kept.anyBegun()) nodes = SIZE_MAX;  // wherever others would be solved
+    if (nodes > 0) m_stage = m_state.pipeline().solveStage(nodes);
+}
+
+// Finds the contacts of the step.
+void SoftBodySolver::Work::detect()
+{
+    if (!m_state.ready()) return m_step.reset();
+    m_state.restart();
+    chooseStage();
+    if (!m_step) m_step = std::make_unique<CollisionStep>(m_state);
+    CollisionStep& step = *m_step;
+    StepStatistics& statistics = m_state.m_statistics;
+    if (m_usage.hasFallen(elementsOf(statistics))) giveBackRoom(m_state);
+    Stopwatch watch;
+    step.begin(m_state.takeNotes(&m_owner, m_predicted), [this](btSoftBody& body) { bringToHost(body); });
+    bringFreeToHost(m_bodies);
+    m_parts.m_mirrorMs += watch.lapMs();
+    const bool follows = m_stage && mayFollow();
+    if (!follows) bringAllToHost(m_bodies);
+    step.submit(follows ? ContactPlace::Device : ContactPlace::Host);
+    const double uploadMs = step.uploadMs();
+    watch.lapMs();
+    const bool submitted = follows && submitBehind(m_bodies, m_state.m_found.source());
+    m_parts.m_readMs += watch.lapMs();
+    const auto takeSolved = [this](bool hasWaited)
+    { m_onDevice = m_solver->finishBehind(*m_stage, hasWaited); };
+    step.finish(submitted ? [&takeSolved] { takeSolved(true); } : CollisionStep::TakeSolved());
+    if (submitted && !step.hasPairs()) takeSolved(false);
+    if (submitted)
+        bringUnsolvedToHost(m_bodies);
+    else
+        bringAllToHost(m_bodies);
+    for (int i = 0; i < m_bodies.size(); ++i)
+        step.reportInvalid(*m_bodies[i]);
+    m_detected = true;
+    statistics.m_clothsSkipped = m_asleep + step.pinnedCloths();
+    m_parts.m_writeMs = watch.lapMs() - statistics.m_waitMs - (step.uploadMs() - uploadMs);
+}
+
+// Solves the bodies that the device has not solved behind the detection, and writes all results back.
+void SoftBodySolver::Work::solveBodies()
+{
+    StepParts& parts = m_parts;
+    m_bulletLinks.clear();
+    m_solved.assign(static_cast<std::size_t>(m_bodies.size()), 0);
+    Stopwatch watch;
+    takeSubsteps(m_bodies);
+    takeBulletsBodies(m_bodies);
+    parts.m_readMs += watch.lapMs();
+    if (solveByBullet(m_bodies)) parts.m_bulletMs += watch.lapMs();
+    // The host solves what the device has refused.
+    m_state.m_statistics.m_clothsSolvedOnDevice =
+        m_onDevice + m_solver->solve(m_touched, m_free, m_state.m_found.source(),
+                                               m_onDevice > 0 ? nullptr : m_stage);
+    double linksMs = 0;
+    for (const std::unique_ptr<BulletLinks>& links : m_bulletLinks)
+        linksMs += links->ms();
+    parts.m_solveMs = watch.lapMs() - linksMs;
+    parts.m_bulletMs += linksMs;
+    forBodies(
+        m_ends.size(), m_state.threads(), [&](std::size_t i) { return m_ends[i].second->count(); },
+        [&](std::size_t i, ThreadTeam* threads)
+        { SubstepBody::end(*m_ends[i].second, *m_ends[i].first, threads); });
+    for (int i = 0; i < m_bodies.size(); ++i)
+    {
+        btSoftBody& body = *m_bodies[i];
+        if (!isSteppedBody(body) || m_state.m_kept.stepOf(body)) continue;
+        if (holdInBounds(m_state, body, contactsOf(body))) m_state.m_statistics.m_status |= kStepMotionHeldBack;
+    }
+    m_rigidBodies.applyImpulses();
+    parts.m_writeBackMs = watch.lapMs();
+}
+
+// Keeps bodies that strayed from their predicted paths at their distance from what is near their real ones. A body that
+// would pass a surface on the way goes back to where it was checked.
+void SoftBodySolver::Work::closeOffPath(const std::vector<BodyContacts*>& bodies)
+{
+    if (bodies.empty()) return;
+    std::vector<SolverCloth> cloths;
+    std::vector<SolverNodes> checked;
+    for (BodyContacts* body : bodies)
+    {
+        cloths.push_back({&body->m_contacts, nullptr, nullptr, nullptr, nullptr});
+        checked.push_back(body->nodes());
+    }
+    m_solver->close(cloths, m_state.m_found.source());
+    for (BodyContacts* body : bodies)
+        writeShifted(body->nodes(), *body->m_body);
+    m_step->detectRealPaths();
+    for (std::size_t i = 0; i < bodies.size(); ++i)
+    {
+        if (!m_step->passesSurface(*bodies[i])) continue;
+        for (std::size_t node = 0; node < checked[i].count(); ++node)
+            writeNode(checked[i], node, bodies[i]->m_body->m_nodes[int(node)]);
+    }
+}
+
+void SoftBodySolver::Work::solveStep()
+{
+    StepParts& parts = m_parts;
+    const std::size_t waits = m_state.ready() ? m_state.pipeline().deviceWaits() : 0;
+    Stopwatch watch;
+    m_begun = false;
+    m_onDevice = 0;
+    m_stage = nullptr;
+    leaveToBullet();
+    parts.m_readMs += watch.lapMs();
+    detect();
+    solveBodies();
+    CollisionStep* const step = m_step.get();
+    if (!step) return;
+    StepStatistics& statistics = m_state.m_statistics;
+    const double waitMs = statistics.m_waitMs, uploadMs = step->uploadMs();
+    watch.lapMs();
+    closeOffPath(step->checkOffPath());
+    step->reportMeetingDeformed();
+    step->end();
+    statistics.m_clothsKept = endKept(m_bodies);
+    parts.m_uploadMs = step->uploadMs();
+    parts.m_checkMs = watch.lapMs() - (statistics.m_waitMs - waitMs) - (parts.m_uploadMs - uploadMs);
+    parts.m_waitMs = statistics.m_waitMs;
+    parts.m_refitMs = statistics.m_refitMs;
+    parts.m_broadMs = statistics.m_broadMs;
+    parts.m_narrowMs = statistics.m_narrowMs;
+    static_cast<StepParts&>(statistics) = parts;
+    const std::size_t all = m_state.pipeline().deviceWaits();
+    statistics.m_deviceWaits = all > waits ? all - waits : 0;  // a device may have been opened anew
+}
+
+void SoftBodySolver::Work::endFailedStep()
+{
+    for (int i = 0; i < m_bodies.size(); ++i)
+    {
+        btSoftBody& body = *m_bodies[i];
+        const SubstepBody* const substeps = substepsAt(body);
+        const bool isOnDevice = substeps && substeps->isOnDevice();  // its nodes are those of the last step's end
+        if (isSolved(i) || !isSteppedBody(body) || isOnDevice) continue;
+        if (handlesSteppedCloth(m_state, body))
+        {
+            const BodyContacts* const contacts = m_detected ? contactsOf(body) : nullptr;
+            holdStill(body, contacts && !contacts->m_isOnDevice ? contacts : nullptr);
+        }
+        else
+            drape::solveByBullet(body);
+    }
+    m_step.reset();
+    m_failures = m_state.failures();
+    if (!m_state.ready()) return;
+    m_state.m_statistics = StepStatistics();
+    m_state.m_statistics.m_status |= kStepOutOfMemory;
+    if (m_state.pipeline().deviceFailed()) m_state.m_statistics.m_status |= kStepDeviceFailed;
+}
+
+void SoftBodySolver::Work::readByBullet(btSoftBody& body, const btCollisionObject& object)
+{
+    const auto failed = [&](const CaughtException& caught)
+    { m_state.fail("drape::SoftBodySolver::processCollision", caught); };
+    if (m_state.m_kept.stepOf(body) && m_state.m_kept.isRead(body, object))
+        guarded([&] { bringToHost(body); }, failed);
+    m_state.updateNodeTree(body);
+}
+}  // namespace drape
