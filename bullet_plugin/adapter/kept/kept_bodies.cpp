@@ -1,14 +1,12 @@
 #include "bullet_plugin/adapter/kept/kept_bodies.h"
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
 
-#include "BulletCollision/BroadphaseCollision/btBroadphaseInterface.h"
-#include "BulletCollision/CollisionShapes/btCompoundShape.h"
-#include "BulletCollision/CollisionShapes/btStaticPlaneShape.h"
-#include "bullet_plugin/adapter/pairs/eligibility.h"
+#include "bullet_plugin/adapter/kept/kept_boxes.h"
+#include "bullet_plugin/adapter/kept/stock_pairs.h"
 #include "bullet_plugin/adapter/mirrors/solid_links.h"
+#include "bullet_plugin/adapter/pairs/eligibility.h"
 #include "bullet_plugin/adapter/wiring/plugin_state.h"
 #include "bullet_plugin/adapter/motion/prediction.h"
 #include "bullet_plugin/adapter/solver/substep_body.h"
@@ -20,97 +18,9 @@ namespace drape
 {
 namespace
 {
-// Returns whether Bullet looks for contacts of the two soft bodies.
-bool bothCollide(const btSoftBody& a, const btSoftBody& b)
-{
-    return (a.m_cfg.collisions & b.m_cfg.collisions & btSoftBody::fCollision::SVSmask) != 0;
-}
-
-// Returns whether the body's bounds reach below a static plane, whose own bounds are infinite.
-bool reachesBelow(const btSoftBody& body, const btCollisionObject& object, const btStaticPlaneShape& plane)
-{
-    const btVector3 normal = object.getWorldTransform().getBasis() * plane.getPlaneNormal();
-    const btVector3 origin = object.getWorldTransform() * (plane.getPlaneNormal() * plane.getPlaneConstant());
-    btVector3 lowest;
-    for (int axis = 0; axis < 3; ++axis)
-        lowest[axis] = body.m_bounds[normal[axis] > 0 ? 0 : 1][axis];
-    return normal.dot(lowest - origin) <= plane.getMargin();
-}
-
-// Looks for objects whose contacts with the body Bullet's own algorithm would find.
-class FindStock : public btBroadphaseAabbCallback
-{
-public:
-    FindStock(const PluginState& state, const btSoftBody& body) : m_state(state), m_body(body) {}
-
-    bool process(const btBroadphaseProxy* proxy) override
-    {
-        const auto* const object = static_cast<const btCollisionObject*>(proxy->m_clientObject);
-        m_found = m_found || (object && object != &m_body && object->getCollisionShape() && isStock(*object));
-        return !m_found;
-    }
-
-    bool isStock(const btCollisionObject& object) const
-    {
-        if (!respond(m_body, object) || !m_body.checkCollideWith(&object) || !object.checkCollideWith(&m_body))
-            return false;
-        if (const btSoftBody* const other = btSoftBody::upcast(&object)) return bothCollide(m_body, *other);
-        const btCollisionShape& shape = *object.getCollisionShape();
-        if (shape.getShapeType() == STATIC_PLANE_PROXYTYPE)
-            return reachesBelow(m_body, object, static_cast<const btStaticPlaneShape&>(shape));
-        return !handlesAll(object, shape);
-    }
-
-    bool m_found = false;
-
-private:
-    bool handlesAll(const btCollisionObject& object, const btCollisionShape& shape) const
-    {
-        if (!shape.isCompound()) return !reasonForStock(m_state, m_body, object, shape);
-        const auto& compound = static_cast<const btCompoundShape&>(shape);
-        for (int i = 0; i < compound.getNumChildShapes(); ++i)
-            if (!handlesAll(object, *compound.getChildShape(i))) return false;
-        return true;
-    }
-
-    const PluginState& m_state;
-    const btSoftBody& m_body;
-};
-
 btVector3 corner(const float numbers[3])
 {
     return btVector3(btScalar(numbers[0]), btScalar(numbers[1]), btScalar(numbers[2]));
-}
-
-void add(KeptBoxes& boxes, int box, const btVector3& v)
-{
-    for (int axis = 0; axis < 3; ++axis)
-    {
-        const float number = float(v[axis]);
-        boxes.m_low[box][axis] = std::min(boxes.m_low[box][axis], number);
-        boxes.m_high[box][axis] = std::max(boxes.m_high[box][axis], number);
-        boxes.m_areFinite = boxes.m_areFinite && std::isfinite(number);
-    }
-}
-
-// Returns the boxes of the coming step, for the time and the gravity of the step before.
-KeptBoxes boxesAround(const btSoftBody& body, const KeptStep& step)
-{
-    KeptBoxes boxes;
-    std::fill_n(&boxes.m_low[0][0], 3 * DRAPE_KEPT_BOXES, HUGE_VALF);
-    std::fill_n(&boxes.m_high[0][0], 3 * DRAPE_KEPT_BOXES, -HUGE_VALF);
-    boxes.m_areFinite = true;
-    const btVector3 gravity = vectorOf(step.m_gravity);
-    for (int i = 0; i < body.m_nodes.size(); ++i)
-    {
-        const btSoftBody::Node& node = body.m_nodes[i];
-        const btVector3 velocity = node.m_im > 0 ? node.m_v + gravity : node.m_v;
-        const btVector3 free = node.m_x + velocity * step.m_time;
-        add(boxes, 0, node.m_x);
-        add(boxes, 1, free);
-        add(boxes, 2, free + (velocity - node.m_v) * step.m_perSecond * step.m_shift);
-    }
-    return boxes;
 }
 
 KeptStep stepOver(const btSoftBody& body, KeptId id)
@@ -354,9 +264,7 @@ bool KeptBodies::begin(btSoftBody& body, btScalar dt)
     const KeptBoxes& boxes = boxesOf(body);
     if (!boxes.m_areFinite) return false;
     setBounds(body, corner(boxes.m_low[1]), corner(boxes.m_high[1]));
-    FindStock stock(m_state, body);
-    body.m_worldInfo->m_broadphase->aabbTest(body.m_bounds[0], body.m_bounds[1], stock);
-    if (stock.m_found) return false;
+    if (anyStockPair(m_state, body)) return false;
     body.m_rcontacts.resizeNoInitialize(0);
     body.m_scontacts.resizeNoInitialize(0);
     kept.m_isBegun = true;
@@ -365,7 +273,7 @@ bool KeptBodies::begin(btSoftBody& body, btScalar dt)
 
 bool KeptBodies::isRead(const btSoftBody& body, const btCollisionObject& object) const
 {
-    return FindStock(m_state, body).isStock(object);
+    return isStockPair(m_state, body, object);
 }
 
 const KeptStep* KeptBodies::stepOf(const btSoftBody& body) const

@@ -98,8 +98,7 @@ void SoftBodySolver::Work::detect()
     watch.lapMs();
     const bool submitted = follows && submitBehind(m_bodies, m_state.m_found.source());
     m_parts.m_readMs += watch.lapMs();
-    const auto takeSolved = [this](bool hasWaited)
-    { m_onDevice = m_solver->finishBehind(*m_stage, hasWaited); };
+    const auto takeSolved = [this](bool hasWaited) { m_onDevice = m_solver->finishBehind(*m_stage, hasWaited); };
     step.finish(submitted ? [&takeSolved] { takeSolved(true); } : CollisionStep::TakeSolved());
     if (submitted && !step.hasPairs()) takeSolved(false);
     if (submitted)
@@ -126,8 +125,7 @@ void SoftBodySolver::Work::solveBodies()
     if (solveByBullet(m_bodies)) parts.m_bulletMs += watch.lapMs();
     // The host solves what the device has refused.
     m_state.m_statistics.m_clothsSolvedOnDevice =
-        m_onDevice + m_solver->solve(m_touched, m_free, m_state.m_found.source(),
-                                               m_onDevice > 0 ? nullptr : m_stage);
+        m_onDevice + m_solver->solve(m_touched, m_free, m_state.m_found.source(), m_onDevice > 0 ? nullptr : m_stage);
     double linksMs = 0;
     for (const std::unique_ptr<BulletLinks>& links : m_bulletLinks)
         linksMs += links->ms();
@@ -135,8 +133,7 @@ void SoftBodySolver::Work::solveBodies()
     parts.m_bulletMs += linksMs;
     forBodies(
         m_ends.size(), m_state.threads(), [&](std::size_t i) { return m_ends[i].second->count(); },
-        [&](std::size_t i, ThreadTeam* threads)
-        { SubstepBody::end(*m_ends[i].second, *m_ends[i].first, threads); });
+        [&](std::size_t i, ThreadTeam* threads) { SubstepBody::end(*m_ends[i].second, *m_ends[i].first, threads); });
     for (int i = 0; i < m_bodies.size(); ++i)
     {
         btSoftBody& body = *m_bodies[i];
@@ -231,8 +228,7 @@ void SoftBodySolver::Work::readByBullet(btSoftBody& body, const btCollisionObjec
 {
     const auto failed = [&](const CaughtException& caught)
     { m_state.fail("drape::SoftBodySolver::processCollision", caught); };
-    if (m_state.m_kept.stepOf(body) && m_state.m_kept.isRead(body, object))
-        guarded([&] { bringToHost(body); }, failed);
+    if (m_state.m_kept.stepOf(body) && m_state.m_kept.isRead(body, object)) guarded([&] { bringToHost(body); }, failed);
     m_state.updateNodeTree(body);
 }
 }  // namespace drape

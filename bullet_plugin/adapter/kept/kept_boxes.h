@@ -1,0 +1,11 @@
+// Boxes around a kept body's nodes in its coming step (KeptBoxes).
+#pragma once
+
+#include "BulletSoftBody/btSoftBody.h"
+#include "bullet_plugin/core/lists/kept_step.h"
+
+namespace drape
+{
+// Returns the boxes of the coming step, for the time and the gravity of the step before. Linear in the nodes.
+KeptBoxes boxesAround(const btSoftBody& body, const KeptStep& step);
+}  // namespace drape
