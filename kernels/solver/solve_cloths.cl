@@ -8,6 +8,7 @@
 #include "../lib/solver/solve_links.h"
 #include "../lib/solver/solve_nodes.h"
 #include "../lib/solver/solve_passes.h"
+#include "../lib/solver/solve_speeds.h"
 #include "solver_bindings.h"
 
 // Opens the group of the work-group's number in the list of groups by level.
