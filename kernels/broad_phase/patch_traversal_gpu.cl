@@ -2,6 +2,7 @@
 // steps would run one after the other with most of the machine idle. The traversal therefore only lists pairs of a
 // triangle and a patch that it may touch, and the groups of the second launch share them (patch_cull_pairs_gpu.cl). A
 // group traverses for one triangle where there are few, otherwise for a packet of neighbouring triangles.
+#include "../lib/broad_phase/cull_volume.h"
 #include "../lib/broad_phase/patch_pairs.h"
 
 // Maximum patches found before they are turned into pairs.

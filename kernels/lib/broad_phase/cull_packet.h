@@ -1,9 +1,9 @@
 // Volumes of a packet of cloth triangles, one per lane; a GPU's traversal (patch_traversal_gpu.cl) makes the same for
-// one triangle, see feature_cull.h. Also the volumes of one triangle's nodes and edges, with one direction per lane.
+// one triangle, see cull_volume.h. Also the volumes of one triangle's nodes and edges, with one direction per lane.
 #ifndef DRAPE_LIB_CULL_PACKET_H
 #define DRAPE_LIB_CULL_PACKET_H
 
-#include "feature_cull.h"
+#include "cull_volume.h"
 
 DRAPE_NAMESPACE_BEGIN
 
