@@ -1,0 +1,249 @@
+// Takes the contacts of a step's detections, ends paths before what they would pass, and detects again.
+#include <algorithm>
+#include <cmath>
+
+#include "bullet_plugin/adapter/collision/collision_step.h"
+#include "bullet_plugin/adapter/collision/stretch.h"
+#include "bullet_plugin/adapter/solver/body_nodes.h"
+#include "bullet_plugin/core/pipeline/add_detection.h"
+#include "bullet_plugin/core/stopwatch.h"
+
+namespace drape
+{
+namespace
+{
+// Factor on the tests that ordinary motion needs, for cloth that came apart or is beside an obstacle that jumps.
+constexpr float kMostAllowance = 8;
+}  // namespace
+
+// Takes the contacts of the current detection. If that holds bodies together, detects again and takes the new
+// contacts.
+void CollisionStep::receiveHeld(Detection detection, const TakeSolved& takeSolved)
+{
+    receiveAll(detection, takeSolved);
+    if (!m_heldTogether) return;
+    // Bodies that are examined again are not left out yet.
+    StepStatistics& statistics = m_state.m_statistics;
+    const auto isLeftOut = [](const BodyContacts& body) { return body.m_leftOut; };
+    statistics.m_clothsLeftOut = std::size_t(std::count_if(m_bodies.begin(), m_bodies.end(), isLeftOut));
+    if (statistics.m_clothsLeftOut == 0) statistics.m_status &= ~std::uint32_t(kStepClothsLeftOut);
+    statistics.m_status |= kStepMotionHeldBack;
+    if (detection == Detection::First) detection = Detection::Again;
+    namePairs(detection);
+    submit(detection);
+    receiveAll(detection);
+    for (BodyContacts& body : m_bodies)
+        body.m_heldTogether = false;
+    m_heldTogether = false;
+}
+
+void CollisionStep::receive(const ContactList& contacts, Detection detection)
+{
+    const auto isDone = [detection](const BodyContacts& body)
+    { return detection != Detection::Check && body.m_contacts.m_isSolved; };
+    BodyContacts* body = nullptr;
+    for (std::size_t i = 0; i < contacts.size();)
+    {
+        const Contact& first = contacts[i];
+        const ClothFeature cloth = m_state.pipeline().clothFeature(first);
+        if (!body || body->m_cloth != cloth.m_cloth) body = bodyOf(cloth.m_cloth);
+        const std::size_t begin = i;
+        while (i < contacts.size() && contacts[i].m_featureIndex == first.m_featureIndex)
+            ++i;
+        if (!body || !isDetected(*body, detection) || isDone(*body)) continue;
+        const std::uint32_t count = static_cast<std::uint32_t>(i - begin);
+        const OrderedFeature& ordered = body->m_contacts.m_order->features()[cloth.m_index];
+        if (body->m_tangled.empty())
+            addContacts(*body, &first, count, ordered);
+        else
+            addHeldContacts(*body, &first, count, ordered);
+    }
+    for (BodyContacts& pushed : m_bodies)
+        if (!isDone(pushed)) addPushes(pushed);
+}
+
+// Contacts of one feature of the cloth.
+void CollisionStep::addContacts(BodyContacts& body, const Contact* first, std::uint32_t count,
+                                const OrderedFeature& ordered)
+{
+    FeatureContacts feature{first, count, &ordered, 1};
+    for (std::uint32_t i = 0; i < count; ++i)
+        feature.m_leastTime = std::min(feature.m_leastTime, first[i].m_time);
+    body.m_meetsSurface = body.m_meetsSurface || feature.m_leastTime < 1;
+    for (int k = 0; k < 3 && ordered.m_nodes[k] >= 0; ++k)
+        body.m_contacts.m_limit.addContactNode(ordered.m_nodes[k]);
+    body.m_contacts.m_features.push_back(feature);
+}
+
+// Returns how many times as many tests as in ordinary motion the cloth may make.
+float CollisionStep::allowanceOf(MeshId cloth)
+{
+    const std::size_t index = m_byCloth.at(cloth);
+    BodyContacts& body = m_bodies[index];
+    if (body.m_isOnDevice) recordPaths(body);
+    const Stretch stretch = stretchOf(*body.m_body, m_mirrors[index]->faces(), body.nodes());
+    const bool isApart = stretch.m_start > kMostStretch;
+    if (!body.m_heldTogether && (isApart || stretch.m_end > kMostStretch)) return 1;
+    return isApart || body.m_heldTogether || body.m_obstacleJumps ? kMostAllowance : HUGE_VALF;
+}
+
+// Waits for the current detection. Returns its contacts, none if all bodies are solved.
+ContactList CollisionStep::waitForContacts(const TakeSolved& takeSolved)
+{
+    Pipeline& pipeline = m_state.pipeline();
+    const ContactList contacts = pipeline.finish([this](MeshId cloth) { return allowanceOf(cloth); });
+    const bool onDevice = pipeline.areContactsOnDevice();
+    if (!takeSolved && !onDevice) return contacts;
+    const bool isWhole = pipeline.ranOnce() && pipeline.statistics().m_invalidNodes == 0;
+    if (takeSolved && onDevice && isWhole) takeSolved();
+    const auto isSolved = [](const BodyContacts& body) { return body.m_contacts.m_isSolved; };
+    if (std::all_of(m_bodies.begin(), m_bodies.end(), isSolved)) return contacts;
+    for (BodyContacts& body : m_bodies)
+    {
+        body.m_meetsSurface = !isSolved(body);
+        if (body.m_meetsSurface) recordPaths(body);
+    }
+    return pipeline.bringContacts();
+}
+
+// Waits for the current detection. Its contacts replace any earlier ones of this step.
+void CollisionStep::receiveAll(Detection detection, const TakeSolved& takeSolved)
+{
+    for (BodyContacts& body : m_bodies)
+        body.m_contacts.m_features.clear();
+    const ContactList contacts = waitForContacts(takeSolved);
+    addDetection(m_state.m_statistics, m_state.pipeline().statistics(), detection);
+    markUnguarded();
+    if (m_state.pipeline().areContactsOnDevice()) return;
+    m_state.m_found.set(m_state.pipeline(), contacts);
+    receive(contacts, detection);
+}
+
+// Lists the body's contacts that its nodes' paths meet.
+std::vector<SolverContact> CollisionStep::impactsOf(const BodyContacts& body) const
+{
+    std::vector<SolverContact> impacts;
+    for (const FeatureContacts& feature : body.m_contacts.m_features)
+        for (std::uint32_t i = 0; feature.m_leastTime < 1 && i < feature.m_count; ++i)
+            if (feature.m_contacts[i].m_time < 1)
+                impacts.push_back(body.m_contacts.resolve(m_state.m_found.source(), feature.m_contacts[i]));
+    return impacts;
+}
+
+bool CollisionStep::cutAtImpactsOf(BodyContacts& body, Cut cut)
+{
+    if (!cutAtImpacts(body.nodes(), impactsOf(body), cut, body.perSecond())) return false;
+    writeShifted(body.nodes(), *body.m_body);
+    return true;
+}
+
+bool CollisionStep::cutPaths()
+{
+    bool any = false;
+    for (BodyContacts& body : m_bodies)
+        any = cutAtImpactsOf(body, Cut::EachNode) || any;
+    return any;
+}
+
+void CollisionStep::finish(const TakeSolved& takeSolved)
+{
+    m_state.m_statistics = StepStatistics();
+    m_state.m_statistics.m_skipped = m_pairs.empty();
+    if (m_state.pipeline().deviceFailed()) m_state.m_statistics.m_status |= kStepDeviceFailed;
+    for (const ClothMirror* cloth : m_mirrors)
+        if (cloth->hasForeignFaces()) m_state.m_statistics.m_status |= kStepFacesLeftOut;
+    if (m_pairs.empty()) return;
+    m_state.m_statistics.m_startsIntersecting = m_starts.intersectingPairs();
+    m_state.m_statistics.m_startIntersections = m_starts.intersections();
+    if (m_starts.intersectingPairs() > 0) m_state.m_statistics.m_status |= kStepStartsIntersecting;
+    receiveHeld(Detection::First, takeSolved);
+    for (int detections = 1; detections < kMostDetections && cutPaths(); ++detections)
+    {
+        namePairs(Detection::Again);
+        submit(Detection::Again);
+        receiveHeld(Detection::Again);
+    }
+}
+
+bool CollisionStep::cutOffPath(Cut cut)
+{
+    bool any = false;
+    for (std::size_t i = 0; i < m_bodies.size(); ++i)
+    {
+        if (!m_bodies[i].m_isOffPath || !cutAtImpactsOf(m_bodies[i], cut)) continue;
+        m_mirrors[i]->watch(true);
+        any = true;
+    }
+    return any;
+}
+
+// Reports bodies whose paths still pass a surface after the last cut. The next step checks them where they are,
+// except at nodes that the app moves.
+void CollisionStep::reportPassed()
+{
+    for (std::size_t i = 0; i < m_bodies.size(); ++i)
+    {
+        if (!m_bodies[i].m_isOffPath) continue;
+        std::vector<SolverContact> impacts = impactsOf(m_bodies[i]);
+        const SolverNodes& nodes = m_bodies[i].nodes();
+        const auto isHeld = [&](const SolverContact& impact)
+        {
+            return std::any_of(impact.m_nodes, impact.m_nodes + 3,
+                               [&](int node) { return node >= 0 && !(nodes.inverseMass(std::size_t(node)) > 0); });
+        };
+        impacts.erase(std::remove_if(impacts.begin(), impacts.end(), isHeld), impacts.end());
+        if (!anyCuts(impacts)) continue;
+        m_state.m_statistics.m_status |= kStepSurfacePassed;
+        m_mirrors[i]->startAnew();
+    }
+}
+
+void CollisionStep::reportMeetingDeformed()
+{
+    for (const Pair& pair : m_pairs)
+    {
+        const std::size_t body = m_byCloth.at(pair.m_cloth);
+        if (!pair.m_carriedStarts || m_bodies[body].m_leftOut || !m_starts.endsMeeting(pair.m_start)) continue;
+        m_state.m_statistics.m_status |= kStepSurfacePassed;
+        m_mirrors[body]->startAnew();
+    }
+}
+
+void CollisionStep::detectRealPaths()
+{
+    namePairs(Detection::Check);
+    submit(Detection::Check);
+    receiveHeld(Detection::Check);
+}
+
+std::vector<BodyContacts*> CollisionStep::checkOffPath()
+{
+    std::vector<BodyContacts*> bodies;
+    for (std::size_t i = 0; i < m_bodies.size(); ++i)
+    {
+        BodyContacts& body = m_bodies[i];
+        ClothContacts& contacts = body.m_contacts;
+        const bool mayHavePassed = contacts.m_mayHavePassed && !contacts.m_isFiltered;
+        body.m_isOffPath = !body.m_isOnDevice &&
+                           (mayHavePassed || m_mirrors[i]->isWatched() || contacts.m_limit.anyOffPath(body.nodes()));
+        m_mirrors[i]->watch(false);
+        if (body.m_isOffPath) bodies.push_back(&body);
+    }
+    if (bodies.empty()) return {};
+    // Keeps the reported contacts as the solver received them.
+    m_state.m_found.keepList();
+    for (int detections = 1;; ++detections)
+    {
+        detectRealPaths();
+        if (detections > kMostDetections)
+        {
+            reportPassed();
+            return {};
+        }
+        if (!cutOffPath(detections < kMostDetections ? Cut::EachNode : Cut::WholeBody)) break;
+    }
+    bodies.erase(std::remove_if(bodies.begin(), bodies.end(), [](const BodyContacts* body) { return body->m_leftOut; }),
+                 bodies.end());
+    return bodies;
+}
+}  // namespace drape
