@@ -2,8 +2,8 @@
 #ifndef DRAPE_SELF_ARENA_VIEWS_H
 #define DRAPE_SELF_ARENA_VIEWS_H
 
-#include "../lib/step_data/arena_views.h"
 #include "../lib/cloth_cloth/self_views.h"
+#include "../lib/step_data/arena_views.h"
 #include "cloth_cloth_bindings.h"
 
 static SelfPatches selfPatchesAt(__global PatchWord* arena, const SelfPatchLayout* layout)

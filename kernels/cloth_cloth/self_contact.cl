@@ -1,6 +1,6 @@
 // Narrow phase of cloths with themselves. Launches have a fixed width: the list's length is only on the device.
-#include "../lib/work_items/item_runs.h"
 #include "../lib/cloth_cloth/self_tests.h"
+#include "../lib/work_items/item_runs.h"
 
 // Runs a work-item's part of the tests that were left to the continuous test, and lists their contacts. The input's
 // cloth counts the searches.

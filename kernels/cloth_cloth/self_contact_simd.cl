@@ -1,7 +1,7 @@
 // Narrow phase of cloths with themselves on a CPU, like narrow_phase_simd.cl for contacts with obstacles.
-#include "../lib/narrow_phase/lane_runs.h"
 #include "../lib/cloth_cloth/lane_self_contacts.h"
 #include "../lib/cloth_cloth/self_tests.h"
+#include "../lib/narrow_phase/lane_runs.h"
 
 typedef char SelfRowsFit[DRAPE_SELF_ROWS <= DRAPE_LANE_ROWS ? 1 : -1];
 

@@ -1,9 +1,9 @@
 // Broad phase of cloths with themselves on a CPU, over patches of the cloths' own triangles. Every patch traverses
 // the wide tree and tests its features against those of itself and of later patches, a vector of lanes at a time. The
 // output is pairs of features whose volumes over the step overlap, each once.
+#include "../lib/broad_phase/wide_walk.h"
 #include "../lib/cloth_cloth/self_pairs.h"
 #include "../lib/cloth_cloth/self_views.h"
-#include "../lib/broad_phase/wide_walk.h"
 
 // The current cloth, and the step's packed features.
 typedef struct SelfCloths

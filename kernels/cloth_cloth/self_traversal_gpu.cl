@@ -1,9 +1,9 @@
 // Broad phase of cloths with themselves on a GPU, in two launches. In the first, every patch traverses the wide tree
 // and lists itself and later patches whose volumes overlap its own. In the second, groups share these pairs of patches.
 // The output is pairs of features whose volumes over the step overlap, each once.
+#include "../lib/broad_phase/wide_walk.h"
 #include "../lib/cloth_cloth/self_pairs.h"
 #include "../lib/cloth_cloth/self_views.h"
-#include "../lib/broad_phase/wide_walk.h"
 #include "self_arena_views.h"
 
 // Pairs of patches that a group gathers before it reserves room for them.

@@ -1,8 +1,8 @@
 // Self collision of a moving mesh: volumes of its vertices, pairs of its triangles, pairs of features, and the pairs
 // that touch during the step. Lists are filled in no particular order. Their demands must be zero before, and count on
 // when a list is full (see SelfCounters).
-#include "../lib/work_items/item_runs.h"
 #include "../lib/broad_phase/leaf_walk.h"
+#include "../lib/work_items/item_runs.h"
 #include "queries_bindings.h"
 
 // Pairs that a work-item gathers before it reserves room for them with one atomic.

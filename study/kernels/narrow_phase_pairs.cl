@@ -1,8 +1,8 @@
 // Narrow phase over pairs of triangles: contacts of the candidates' features. Launches have a fixed width: the list's
 // length is only on the device.
+#include "../../kernels/lib/narrow_phase/list_contacts.h"
 #include "../../kernels/lib/step_data/arena_views.h"
 #include "../../kernels/lib/work_items/item_runs.h"
-#include "../../kernels/lib/narrow_phase/list_contacts.h"
 #include "../../reference/pair_tests.h"
 #include "narrow_phase_pairs_bindings.h"
 

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "bullet_plugin/core/solver/link_strength.h"
 #include "bullet_plugin/core/solver/host/link_sweep.h"
+#include "bullet_plugin/core/solver/link_strength.h"
 #include "kernels/lib/geometry/vec3.h"
 #include "tests/support/cases.h"
 

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "bullet_plugin/core/solver/topology/cloth_parts.h"
 #include "bullet_plugin/core/solver/host/momentum.h"
+#include "bullet_plugin/core/solver/topology/cloth_parts.h"
 #include "tests/support/cases.h"
 
 namespace drape::test

@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
-#include "bullet_plugin/adapter/solver/body_nodes.h"
 #include "bullet_plugin/adapter/collision/collision_step.h"
 #include "bullet_plugin/adapter/collision/stretch.h"
+#include "bullet_plugin/adapter/solver/body_nodes.h"
 
 namespace drape
 {

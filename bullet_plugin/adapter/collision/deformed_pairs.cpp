@@ -4,8 +4,8 @@
 #include <iterator>
 
 #include "bullet_plugin/adapter/mirrors/mirrors.h"
-#include "bullet_plugin/adapter/wiring/plugin_state.h"
 #include "bullet_plugin/adapter/vectors.h"
+#include "bullet_plugin/adapter/wiring/plugin_state.h"
 
 namespace drape
 {

@@ -5,9 +5,9 @@
 #include <limits>
 #include <utility>
 
-#include "bullet_plugin/adapter/solver/body_nodes.h"
-#include "bullet_plugin/adapter/pairs/margins.h"
 #include "bullet_plugin/adapter/mirrors/mirrors.h"
+#include "bullet_plugin/adapter/pairs/margins.h"
+#include "bullet_plugin/adapter/solver/body_nodes.h"
 #include "bullet_plugin/adapter/wiring/plugin_state.h"
 #include "kernels/lib/geometry/vec3.h"
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "bullet_plugin/adapter/pairs/margins.h"
 #include "bullet_plugin/adapter/mirrors/mesh_reader.h"
+#include "bullet_plugin/adapter/pairs/margins.h"
 #include "bullet_plugin/adapter/vectors.h"
 #include "bullet_plugin/core/scene/scene.h"
 

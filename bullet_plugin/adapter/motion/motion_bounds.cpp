@@ -9,10 +9,10 @@
 #include "BulletCollision/CollisionShapes/btCompoundShape.h"
 #include "BulletCollision/NarrowPhaseCollision/btPersistentManifold.h"
 #include "LinearMath/btAabbUtil2.h"
-#include "bullet_plugin/adapter/solver/body_jobs.h"
+#include "bullet_plugin/adapter/mirrors/mesh_reader.h"
 #include "bullet_plugin/adapter/pairs/eligibility.h"
 #include "bullet_plugin/adapter/pairs/margins.h"
-#include "bullet_plugin/adapter/mirrors/mesh_reader.h"
+#include "bullet_plugin/adapter/solver/body_jobs.h"
 #include "bullet_plugin/adapter/wiring/plugin_state.h"
 
 namespace drape

@@ -3,9 +3,9 @@
 #include "BulletCollision/BroadphaseCollision/btBroadphaseProxy.h"
 #include "BulletCollision/CollisionShapes/btCompoundShape.h"
 #include "bullet_plugin/adapter/mirrors/mesh_reader.h"
-#include "bullet_plugin/adapter/wiring/plugin_state.h"
 #include "bullet_plugin/adapter/mirrors/solid_links.h"
 #include "bullet_plugin/adapter/solver/substep_body.h"
+#include "bullet_plugin/adapter/wiring/plugin_state.h"
 
 namespace drape
 {

@@ -2,11 +2,11 @@
 #include <algorithm>
 #include <iterator>
 
-#include "bullet_plugin/adapter/solver/body_jobs.h"
-#include "bullet_plugin/adapter/pairs/eligibility.h"
 #include "bullet_plugin/adapter/motion/motion_bounds.h"
 #include "bullet_plugin/adapter/motion/node_tree.h"
 #include "bullet_plugin/adapter/motion/prediction.h"
+#include "bullet_plugin/adapter/pairs/eligibility.h"
+#include "bullet_plugin/adapter/solver/body_jobs.h"
 #include "bullet_plugin/adapter/solver/solver_work.h"
 #include "bullet_plugin/core/stopwatch.h"
 

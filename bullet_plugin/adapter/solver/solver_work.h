@@ -11,10 +11,10 @@
 #include <vector>
 
 #include "BulletSoftBody/btSoftBody.h"
-#include "bullet_plugin/adapter/solver/bullet_links.h"
 #include "bullet_plugin/adapter/collision/collision_step.h"
-#include "bullet_plugin/adapter/wiring/plugin_state.h"
+#include "bullet_plugin/adapter/solver/bullet_links.h"
 #include "bullet_plugin/adapter/solver/substep_body.h"
+#include "bullet_plugin/adapter/wiring/plugin_state.h"
 #include "bullet_plugin/core/solver/step_solver.h"
 #include "bullet_plugin/core/usage_watch.h"
 #include "drape/soft_body_solver.h"

@@ -4,11 +4,11 @@
 #include <atomic>
 #include <utility>
 
+#include "bullet_plugin/adapter/mirrors/mirrors.h"
 #include "bullet_plugin/adapter/solver/body_jobs.h"
 #include "bullet_plugin/adapter/solver/body_nodes.h"
-#include "bullet_plugin/adapter/mirrors/mirrors.h"
-#include "bullet_plugin/core/solver/topology/cloth_parts.h"
 #include "bullet_plugin/core/solver/link_strength.h"
+#include "bullet_plugin/core/solver/topology/cloth_parts.h"
 
 namespace drape
 {

@@ -8,11 +8,11 @@
 
 #include "BulletCollision/CollisionDispatch/btCollisionWorld.h"
 #include "BulletCollision/CollisionShapes/btCompoundShape.h"
+#include "bullet_plugin/adapter/mirrors/mesh_reader.h"
+#include "bullet_plugin/adapter/mirrors/solid_links.h"
 #include "bullet_plugin/adapter/pairs/eligibility.h"
 #include "bullet_plugin/adapter/pairs/margins.h"
-#include "bullet_plugin/adapter/mirrors/mesh_reader.h"
 #include "bullet_plugin/adapter/wiring/plugin_state.h"
-#include "bullet_plugin/adapter/mirrors/solid_links.h"
 #include "bullet_plugin/adapter/wiring/wiring.h"
 #include "bullet_plugin/core/probe/mesh_probe.h"
 #include "kernels/lib/geometry/vec3.h"

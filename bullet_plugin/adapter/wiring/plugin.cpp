@@ -5,9 +5,9 @@
 
 #include "BulletCollision/CollisionDispatch/btCollisionWorld.h"
 #include "BulletCollision/CollisionShapes/btCompoundShape.h"
-#include "bullet_plugin/adapter/wiring/diagnosis.h"
-#include "bullet_plugin/adapter/pairs/eligibility.h"
 #include "bullet_plugin/adapter/mirrors/mesh_reader.h"
+#include "bullet_plugin/adapter/pairs/eligibility.h"
+#include "bullet_plugin/adapter/wiring/diagnosis.h"
 #include "bullet_plugin/adapter/wiring/plugin_state.h"
 #include "bullet_plugin/adapter/wiring/wiring.h"
 #include "bullet_plugin/core/public_call.h"

@@ -4,9 +4,9 @@
 
 #include <vector>
 
+#include "bullet_plugin/core/lists/step_pairs.h"
 #include "bullet_plugin/core/scene/device_views.h"
 #include "bullet_plugin/core/scene/scene.h"
-#include "bullet_plugin/core/lists/step_pairs.h"
 
 namespace drape
 {

@@ -7,13 +7,13 @@
 #include "bullet_plugin/core/broad_phase/patch_cull.h"
 #include "bullet_plugin/core/cloth_cloth/self_contacts.h"
 #include "bullet_plugin/core/device/program_set.h"
+#include "bullet_plugin/core/lists/step_pairs.h"
 #include "bullet_plugin/core/narrow_phase/narrow_phase.h"
 #include "bullet_plugin/core/ordering/ordering.h"
 #include "bullet_plugin/core/solver/device/solve_stage.h"
 #include "cloth_store.h"
 #include "drape/settings.h"
 #include "obstacle_store.h"
-#include "bullet_plugin/core/lists/step_pairs.h"
 #include "step_result.h"
 
 namespace drape

@@ -7,11 +7,11 @@
 
 #include "bullet_plugin/core/broad_phase/host_patch_cull.h"
 #include "bullet_plugin/core/cloth_cloth/host_self_patches.h"
+#include "bullet_plugin/core/lists/step_pairs.h"
 #include "bullet_plugin/core/narrow_phase/host_contacts.h"
 #include "drape/settings.h"
 #include "host_placed_obstacles.h"
 #include "step_limits.h"
-#include "bullet_plugin/core/lists/step_pairs.h"
 #include "step_result.h"
 
 namespace drape

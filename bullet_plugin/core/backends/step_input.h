@@ -7,9 +7,9 @@
 
 #include <vector>
 
+#include "bullet_plugin/core/lists/step_pairs.h"
 #include "bullet_plugin/core/scene/scene.h"
 #include "drape/report.h"
-#include "bullet_plugin/core/lists/step_pairs.h"
 
 namespace drape
 {

@@ -1,8 +1,8 @@
 // Makes a scene of one triangle that falls onto another, for a back end's first launches.
 #pragma once
 
-#include "bullet_plugin/core/scene/scene.h"
 #include "bullet_plugin/core/lists/step_pairs.h"
+#include "bullet_plugin/core/scene/scene.h"
 
 namespace drape
 {

@@ -6,8 +6,8 @@
 
 #include "bullet_plugin/core/cloth_cloth/self_step.h"
 #include "bullet_plugin/core/scene/mesh_id.h"
-#include "kernels/shared/motion.h"
 #include "kept_step.h"
+#include "kernels/shared/motion.h"
 #include "ordinary_tests.h"
 
 namespace drape

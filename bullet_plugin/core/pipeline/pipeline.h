@@ -15,9 +15,9 @@
 #include <memory>
 #include <vector>
 
-#include "bullet_plugin/core/ordering/contact_list.h"
 #include "bullet_plugin/core/lists/contact_view.h"
 #include "bullet_plugin/core/lists/kept_step.h"
+#include "bullet_plugin/core/ordering/contact_list.h"
 #include "bullet_plugin/core/threads/thread_team.h"
 #include "drape/error.h"
 #include "drape/mesh_description.h"

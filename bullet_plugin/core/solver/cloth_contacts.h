@@ -5,9 +5,9 @@
 #include <limits>
 #include <vector>
 
-#include "contact_source.h"
-#include "bullet_plugin/core/solver/topology/feature_order.h"
 #include "bullet_plugin/core/solver/host/motion_limit.h"
+#include "bullet_plugin/core/solver/topology/feature_order.h"
+#include "contact_source.h"
 #include "solver_nodes.h"
 
 namespace drape

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "kernels/lib/solver/acting_contact.h"
 #include "kernels/lib/geometry/rigid_motion.h"
+#include "kernels/lib/solver/acting_contact.h"
 #include "solver_nodes.h"
 
 namespace drape

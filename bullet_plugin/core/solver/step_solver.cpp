@@ -4,8 +4,8 @@
 #include <functional>
 #include <iterator>
 
-#include "kernels/lib/solver/closing_sweeps.h"
 #include "bullet_plugin/core/solver/host/momentum.h"
+#include "kernels/lib/solver/closing_sweeps.h"
 #include "rigid_rows.h"
 
 namespace drape

@@ -17,10 +17,10 @@
 #include <memory>
 #include <vector>
 
-#include "bullet_plugin/core/solver/host/contact_sweep.h"
 #include "bullet_plugin/core/solver/device/packed_step.h"
-#include "solver_cloth.h"
+#include "bullet_plugin/core/solver/host/contact_sweep.h"
 #include "bullet_plugin/core/solver/host/substeps.h"
+#include "solver_cloth.h"
 
 namespace drape
 {

@@ -12,10 +12,10 @@
 #define DRAPE_LIB_FEATURE_CULL_H
 
 #include "../geometry/closest.h"
-#include "cone_reach.h"
 #include "../geometry/finite_corners.h"
-#include "../work_items/lanes.h"
 #include "../geometry/rigid_motion.h"
+#include "../work_items/lanes.h"
+#include "cone_reach.h"
 
 DRAPE_NAMESPACE_BEGIN
 

@@ -13,10 +13,10 @@
 #define DRAPE_LIB_SELF_CONTACT_H
 
 #include "../../shared/patch.h"
+#include "../broad_phase/leaf_walk.h"
 #include "../narrow_phase/edge_edge_contact.h"
 #include "../narrow_phase/face_vertex_contact.h"
 #include "../narrow_phase/pair_contact.h"
-#include "../broad_phase/leaf_walk.h"
 
 DRAPE_NAMESPACE_BEGIN
 

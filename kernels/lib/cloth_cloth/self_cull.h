@@ -7,8 +7,8 @@
 #ifndef DRAPE_LIB_SELF_CULL_H
 #define DRAPE_LIB_SELF_CULL_H
 
-#include "../work_items/lanes.h"
 #include "../broad_phase/leaf_walk.h"
+#include "../work_items/lanes.h"
 
 DRAPE_NAMESPACE_BEGIN
 

@@ -4,9 +4,9 @@
 #define DRAPE_LIB_SELF_PAIRS_H
 
 #include "../broad_phase/cull_packet.h"
+#include "../work_items/simd_group.h"
 #include "self_contact.h"
 #include "self_cull.h"
-#include "../work_items/simd_group.h"
 
 // A cloth over the step. start: the end's positions in a discrete step.
 typedef struct SelfCloth

@@ -7,8 +7,8 @@
 #ifndef DRAPE_LIB_LANE_CONTACTS_H
 #define DRAPE_LIB_LANE_CONTACTS_H
 
-#include "feature_meeting.h"
 #include "../work_items/lanes.h"
+#include "feature_meeting.h"
 #include "node_face_contact.h"
 
 DRAPE_NAMESPACE_BEGIN

@@ -4,9 +4,9 @@
 #define DRAPE_LIB_LANE_RUNS_H
 
 #include "../work_items/item_runs.h"
+#include "../work_items/simd_group.h"
 #include "lane_contacts.h"
 #include "list_contacts.h"
-#include "../work_items/simd_group.h"
 
 // Maximum kinds of tests, and maximum rows of numbers of one test.
 #define DRAPE_LANE_KINDS 3

@@ -2,9 +2,9 @@
 #ifndef DRAPE_LIB_ACTING_CONTACT_H
 #define DRAPE_LIB_ACTING_CONTACT_H
 
+#include "../geometry/segment.h"
 #include "contact_plane.h"
 #include "contact_row.h"
-#include "../geometry/segment.h"
 
 DRAPE_NAMESPACE_BEGIN
 

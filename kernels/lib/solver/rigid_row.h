@@ -3,8 +3,8 @@
 #define DRAPE_LIB_RIGID_ROW_H
 
 #include "../../shared/rigid.h"
-#include "solver_node.h"
 #include "../geometry/vec3.h"
+#include "solver_node.h"
 
 DRAPE_NAMESPACE_BEGIN
 

@@ -9,8 +9,8 @@
 #define DRAPE_LIB_SIMD_GROUP_H
 
 #include "../../shared/mesh.h"
-#include "lanes.h"
 #include "../step_data/step_views.h"
+#include "lanes.h"
 
 // Records gathered before room is reserved for them; a surplus goes to the list one by one.
 #define DRAPE_GROUP_KEPT (4 * DRAPE_PATCH_WIDTH)

@@ -10,9 +10,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "bullet_plugin/core/solver/solver_cloth.h"
 #include "kernels/shared/rigid.h"
 #include "kernels/shared/solve_step.h"
-#include "bullet_plugin/core/solver/solver_cloth.h"
 #include "word_offsets.h"
 
 namespace drape

@@ -8,10 +8,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "kernels/shared/solve_step.h"
 #include "bullet_plugin/core/solver/host/link_sweep.h"
-#include "bullet_plugin/core/solver/topology/revision.h"
 #include "bullet_plugin/core/solver/solver_cloth.h"
+#include "bullet_plugin/core/solver/topology/revision.h"
+#include "kernels/shared/solve_step.h"
 
 namespace drape
 {

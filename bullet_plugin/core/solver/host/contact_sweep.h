@@ -15,9 +15,9 @@
 #include <memory>
 #include <vector>
 
+#include "bullet_plugin/core/solver/solver_cloth.h"
 #include "bullet_plugin/core/threads/thread_team.h"
 #include "contact_group.h"
-#include "bullet_plugin/core/solver/solver_cloth.h"
 
 namespace drape
 {

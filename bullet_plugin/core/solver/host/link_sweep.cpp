@@ -6,8 +6,8 @@
 #include <numeric>
 #include <tuple>
 
-#include "bullet_plugin/core/threads/ranges.h"
 #include "bullet_plugin/core/solver/topology/colouring.h"
+#include "bullet_plugin/core/threads/ranges.h"
 
 namespace drape
 {

@@ -12,9 +12,9 @@
 #include <memory>
 #include <vector>
 
+#include "bullet_plugin/core/solver/topology/revision.h"
 #include "bullet_plugin/core/threads/thread_team.h"
 #include "kernels/lib/solver/solver_node.h"
-#include "bullet_plugin/core/solver/topology/revision.h"
 
 namespace drape
 {

@@ -11,10 +11,10 @@
 #include <limits>
 #include <vector>
 
-#include "bullet_plugin/core/solver/topology/cloth_faces.h"
-#include "kernels/lib/solver/motion_limit.h"
 #include "bullet_plugin/core/solver/solver_contact.h"
 #include "bullet_plugin/core/solver/solver_nodes.h"
+#include "bullet_plugin/core/solver/topology/cloth_faces.h"
+#include "kernels/lib/solver/motion_limit.h"
 
 namespace drape
 {

@@ -9,9 +9,9 @@
 #include <cstddef>
 #include <vector>
 
+#include "bullet_plugin/core/solver/solver_nodes.h"
 #include "bullet_plugin/core/threads/thread_team.h"
 #include "link_sweep.h"
-#include "bullet_plugin/core/solver/solver_nodes.h"
 
 namespace drape
 {
