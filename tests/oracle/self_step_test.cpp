@@ -8,6 +8,7 @@
 #include <set>
 #include <tuple>
 
+#include "kernels/lib/narrow_phase/feature_meeting.h"
 #include "scenes/describe_mesh.h"
 #include "scenes/mesh_loader.h"
 #include "tests/support/backends.h"
