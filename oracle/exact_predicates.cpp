@@ -134,6 +134,16 @@ bool segmentMeetsTriangle(const Vector3& p, const Vector3& q, const Vector3 t[3]
     return !((s0 > 0 || s1 > 0 || s2 > 0) && (s0 < 0 || s1 < 0 || s2 < 0));
 }
 
+bool foldedFlat(const Vector3& a, const Vector3& b, const Vector3& c, const Vector3& d)
+{
+    if (orientation(a, b, c, d) != 0) return false;
+    // Views along the axes keep the sides of a plane; one in which c and d have a side decides.
+    for (int along = 0; along < 3; ++along)
+        if (orientation2(a, b, c, along) * orientation2(a, b, d, along) != 0)
+            return orientation2(a, b, c, along) == orientation2(a, b, d, along);
+    return false;
+}
+
 bool trianglesIntersect(const Vector3 a[3], const Vector3 b[3])
 {
     // All of one triangle is strictly on one side of the other's plane: they do not meet.

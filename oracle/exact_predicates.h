@@ -18,4 +18,8 @@ bool trianglesIntersect(const Vector3 a[3], const Vector3 b[3]);
 
 // Returns true if the closed segment p q and the closed triangle have a point in common.
 bool segmentMeetsTriangle(const Vector3& p, const Vector3& q, const Vector3 triangle[3]);
+
+// Returns true if the triangles (a, b, c) and (a, b, d), which share the edge a b, lie in one plane on the same side of
+// that edge. False if one has no area.
+bool foldedFlat(const Vector3& a, const Vector3& b, const Vector3& c, const Vector3& d);
 }  // namespace drape

@@ -59,11 +59,11 @@ void describe(RunRecord& record, BulletMode mode, const DropScene& scene)
     record.m_device = "host";
     record.m_solver = "bullet";
     record.m_deviceReason = "Bullet's built-in collision runs on the host";
-    record.m_clothTriangles = scene.m_cloth.m_mesh.triangleCount();
-    record.m_clothNodes = scene.m_cloth.m_mesh.vertexCount();
+    record.m_clothTriangles = scene.m_sheets.triangleCount();
+    record.m_clothNodes = scene.m_sheets.vertexCount();
     record.m_obstacleTriangles = scene.m_obstacle.triangleCount();
     record.m_thickness = scene.m_thickness;
-    record.m_lastPositions = scene.m_cloth.m_mesh.m_positions;
+    record.m_lastPositions = scene.m_sheets.m_positions;
 }
 }  // namespace
 

@@ -1,5 +1,4 @@
 #include "tools/cloth_drop/drop_world.h"
-#include "tools/cloth_drop/node_positions.h"
 #include "tools/cloth_drop/simulation.h"
 
 namespace drape
@@ -30,7 +29,8 @@ public:
             m_world.addSoftObstacle(scene);
         else
             m_world.addMeshObstacle(scene);
-        m_world.addCloth(scene, mode == BulletMode::SoftPair);
+        m_world.addCloths(scene, mode == BulletMode::SoftPair);
+        if (scene.m_self) m_world.useBulletsSelfCollision();
     }
 
     StepTimes step() override
@@ -44,7 +44,7 @@ public:
         return times;
     }
 
-    const std::vector<float>& positions() override { return copyPositions(m_world.cloth(), m_positions); }
+    const std::vector<float>& positions() override { return m_world.positions(); }
     std::string backend() const override
     {
         return m_mode == BulletMode::Stock   ? "bullet (stock)"
@@ -60,7 +60,6 @@ private:
     DropWorld m_world;
     BulletMode m_mode;
     double m_dt;
-    std::vector<float> m_positions;
 };
 }  // namespace
 

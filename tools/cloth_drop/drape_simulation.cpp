@@ -3,7 +3,6 @@
 #include <iostream>
 
 #include "tools/cloth_drop/drop_world.h"
-#include "tools/cloth_drop/node_positions.h"
 #include "tools/cloth_drop/simulation.h"
 #include "tools/cloth_drop/timed_solver.h"
 #include "tools/common/device_option.h"
@@ -22,7 +21,9 @@ public:
           m_dt(scene.m_dt)
     {
         m_world.addMeshObstacle(scene);
-        m_world.addCloth(scene, false);
+        m_world.addCloths(scene, false);
+        for (std::size_t i = 0; scene.m_self && i < scene.m_layers; ++i)
+            m_plugin->setSelfCollision(m_world.cloth(i), true);
         const TimedSolver::Timer timer(m_meshesMs);
         m_plugin->prepare(m_world.world());
     }
@@ -47,7 +48,7 @@ public:
         return times;
     }
 
-    const std::vector<float>& positions() override { return copyPositions(m_world.cloth(), m_positions); }
+    const std::vector<float>& positions() override { return m_world.positions(); }
     std::string backend() const override { return m_plugin->device().m_onHost ? "host" : "opencl"; }
     std::string device() const override { return m_plugin->device().m_device.m_name; }
     std::string deviceReason() const override { return m_plugin->device().m_reason; }
@@ -73,7 +74,6 @@ private:
     double m_dt;
     double m_meshesMs = 0;  // time to prepare cloth and obstacle
     std::uint32_t m_status = 0;
-    std::vector<float> m_positions;
 };
 }  // namespace
 

@@ -1,10 +1,12 @@
 #include "tools/cloth_drop/drop_scene.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <limits>
 
+#include "scenes/mesh_builder.h"
 #include "scenes/mesh_loader.h"
 #include "scenes/shapes.h"
 #include "tools/common/suggestion.h"
@@ -17,6 +19,30 @@ namespace
 constexpr double kMostThickness = 0.25;
 // A thickness below this many float32 steps at the scene's size is mostly rounding.
 constexpr double kLeastRoundings = 8;
+
+// Distance of a sheet from the one below, as a multiple of the thickness.
+constexpr double kLayerDistance = 1.5;
+// Each sheet is turned about the vertical against the one below, so that edges of neighbours are not parallel.
+constexpr double kLayerTurn = 0.12;
+
+// Adds the scene's sheets above one another.
+void addSheets(DropScene& scene)
+{
+    const TriangleMesh& sheet = scene.m_cloth.m_mesh;
+    for (std::size_t layer = 0; layer < scene.m_layers; ++layer)
+    {
+        const double angle = kLayerTurn * double(layer), rise = kLayerDistance * scene.m_thickness * double(layer);
+        const double c = std::cos(angle), s = std::sin(angle);
+        const auto first = static_cast<std::int32_t>(scene.m_sheets.vertexCount());
+        for (std::size_t i = 0; i < sheet.m_positions.size(); i += 3)
+        {
+            const double x = sheet.m_positions[i], z = sheet.m_positions[i + 2];
+            addVertex(scene.m_sheets, c * x - s * z, sheet.m_positions[i + 1] + rise, s * x + c * z);
+        }
+        for (const std::int32_t node : sheet.m_triangles)
+            scene.m_sheets.m_triangles.push_back(first + node);
+    }
+}
 
 // Suggests a shape where the name is neither a file nor a shape.
 bool makeObstacle(const std::string& name, TriangleMesh& mesh, LoadReport& report, std::string& error)
@@ -47,9 +73,12 @@ bool makeDropScene(const Options& options, DropScene& scene, std::string& error)
     const double top = boundsOf(scene.m_obstacle).m_high[1];
     scene.m_cloth = makeClothGrid(options.m_clothColumns, options.m_clothRows, static_cast<float>(options.m_clothSize),
                                   static_cast<float>(top + options.m_thickness + options.m_dropHeight));
+    scene.m_layers = static_cast<std::size_t>(options.m_layers);
+    scene.m_self = options.m_self;
     scene.m_dropSpeed = options.m_dropSpeed;
     scene.m_dt = options.m_dt;
     scene.m_thickness = options.m_thickness;
+    addSheets(scene);
     return true;
 }
 

@@ -1,4 +1,4 @@
-// The scene that every back end is given: an obstacle standing on y = 0 and a flat cloth above it. Knows no Bullet.
+// The scene that every back end is given: an obstacle standing on y = 0 and flat cloths above it. Knows no Bullet.
 #pragma once
 
 #include <string>
@@ -15,11 +15,14 @@ constexpr double kGravity = 9.81;  // m/s² downwards
 struct DropScene
 {
     TriangleMesh m_obstacle;
-    ClothGrid m_cloth;
+    ClothGrid m_cloth;                 // the lowest sheet
+    std::size_t m_layers = 1;          // sheets above one another
+    TriangleMesh m_sheets;             // all sheets as one mesh, one after the other, the lowest first
+    bool m_self = false;               // sheets collide with themselves and with each other
     double m_dropSpeed = 0;            // m/s downwards, of the whole cloth at the start
     double m_dt = 0;                   // s
     double m_thickness = 0;            // m; each side's margin is half of it
-    double m_mass = 1.0;               // kg, of the cloth
+    double m_mass = 1.0;               // kg, of each sheet
     std::vector<std::string> m_notes;  // parts of the obstacle's file that were left out or lost, one line each
 };
 

@@ -1,6 +1,9 @@
 #include "tools/cloth_drop/drop_world.h"
 
+#include <algorithm>
 #include <chrono>
+
+#include "tools/cloth_drop/node_positions.h"
 
 namespace drape
 {
@@ -15,6 +18,7 @@ constexpr btScalar kBendingStiffness = 0.1f;
 constexpr btScalar kDamping = 0.02f;
 constexpr btScalar kFriction = 0.6f;
 constexpr int kPositionIterations = 5;
+constexpr int kNodesPerCluster = 16;
 
 double since(Clock::time_point start)
 {
@@ -118,9 +122,32 @@ void DropWorld::addSoftObstacle(const DropScene& scene)
     m_world.addSoftBody(m_softObstacle.get());
 }
 
-void DropWorld::addCloth(const DropScene& scene, bool softPairs)
+void DropWorld::addCloths(const DropScene& scene, bool softPairs)
 {
-    m_cloths.push_back(makeBody(m_world.getWorldInfo(), scene.m_cloth.m_mesh, scene.m_mass, 0.5 * scene.m_thickness));
+    TriangleMesh sheet = scene.m_cloth.m_mesh;
+    const std::size_t count = sheet.m_positions.size();
+    for (std::size_t layer = 0; layer < scene.m_layers; ++layer)
+    {
+        std::copy_n(scene.m_sheets.m_positions.begin() + std::ptrdiff_t(layer * count), count,
+                    sheet.m_positions.begin());
+        addSheet(scene, sheet, softPairs);
+    }
+}
+
+const std::vector<float>& DropWorld::positions()
+{
+    m_positions.clear();
+    for (const std::unique_ptr<btSoftBody>& cloth : m_cloths)
+    {
+        copyPositions(*cloth, m_ofOne);
+        m_positions.insert(m_positions.end(), m_ofOne.begin(), m_ofOne.end());
+    }
+    return m_positions;
+}
+
+void DropWorld::addSheet(const DropScene& scene, const TriangleMesh& sheet, bool softPairs)
+{
+    m_cloths.push_back(makeBody(m_world.getWorldInfo(), sheet, scene.m_mass, 0.5 * scene.m_thickness));
     btSoftBody& cloth = *m_cloths.back();
     btSoftBody::Material* edges = cloth.m_materials[0];
     edges->m_kLST = kEdgeStiffness;
@@ -133,9 +160,18 @@ void DropWorld::addCloth(const DropScene& scene, bool softPairs)
     cloth.m_cfg.collisions =
         softPairs ? btSoftBody::fCollision::VF_SS : static_cast<int>(btSoftBody::fCollision::SDF_RS);
     cloth.setVelocity(btVector3(0, static_cast<btScalar>(-scene.m_dropSpeed), 0));
-    // Cloths meet obstacles alone, unless the obstacle is a soft body.
+    // Cloths meet obstacles alone, unless the obstacle is a soft body or the scene lets them meet.
     const int group = btBroadphaseProxy::DefaultFilter, all = btBroadphaseProxy::AllFilter;
-    m_world.addSoftBody(&cloth, group, softPairs ? all : all ^ group);
+    m_world.addSoftBody(&cloth, group, softPairs || scene.m_self ? all : all ^ group);
+}
+
+void DropWorld::useBulletsSelfCollision()
+{
+    for (const std::unique_ptr<btSoftBody>& cloth : m_cloths)
+    {
+        cloth->generateClusters(cloth->m_nodes.size() / kNodesPerCluster + 1);
+        cloth->m_cfg.collisions |= btSoftBody::fCollision::VF_SS | btSoftBody::fCollision::CL_SELF;
+    }
 }
 
 double DropWorld::step(double dt)

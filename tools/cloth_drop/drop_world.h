@@ -41,18 +41,26 @@ public:
     // the end of the step.
     btRigidBody& addMovingObstacle(const DropScene& scene);
     void addSoftObstacle(const DropScene& scene);  // a soft body of massless nodes, for VF_SS
-    // May be called several times.
-    void addCloth(const DropScene& scene, bool softPairs);
+    // Adds the scene's lowest sheet. May be called several times.
+    void addCloth(const DropScene& scene, bool softPairs) { addSheet(scene, scene.m_cloth.m_mesh, softPairs); }
+    // Adds all sheets of the scene, which may meet each other if it says so.
+    void addCloths(const DropScene& scene, bool softPairs);
+    // Lets all cloths collide with themselves (by clusters) and with each other (nodes against faces) in Bullet's way.
+    void useBulletsSelfCollision();
 
     TimedWorld& world() { return m_world; }
     // The cloth that was added first, or another one.
     btSoftBody& cloth(std::size_t index = 0) { return *m_cloths[index]; }
     const btSoftBody& cloth(std::size_t index = 0) const { return *m_cloths[index]; }
 
+    // Returns the nodes of all cloths, x y z each, m, in the order in which the cloths were added.
+    const std::vector<float>& positions();
+
     // Runs one step and returns its wall time in ms.
     double step(double dt);
 
 private:
+    void addSheet(const DropScene& scene, const TriangleMesh& sheet, bool softPairs);
     void makeShape(const DropScene& scene);
 
     std::unique_ptr<btCollisionConfiguration> m_configuration;
@@ -68,5 +76,6 @@ private:
     std::unique_ptr<btCollisionObject> m_object;
     std::unique_ptr<btSoftBody> m_softObstacle;
     std::vector<std::unique_ptr<btSoftBody>> m_cloths;
+    std::vector<float> m_positions, m_ofOne;  // working memory of positions()
 };
 }  // namespace drape

@@ -87,6 +87,9 @@ void addSceneOptions(CLI::App& app, Options& options, std::string& cloth)
         ->check(length);
     app.add_option("--cloth", cloth, "cloth nodes along x and z")->type_name("NxM")->check(CLI::Validator(grid, ""));
     app.add_option("--cloth-size", options.m_clothSize, "longer side of the cloth, m, 10000 at most")->check(length);
+    app.add_option("--layers", options.m_layers, "sheets of cloth above one another, 1 to 100")
+        ->check(CLI::Validator(wholeNumber(1, 100), ""));
+    app.add_flag("--self", options.m_self, "let sheets collide with themselves and with each other");
     app.add_option("--drop-height", options.m_dropHeight, "free fall before the thickness is reached, m, 10000 at most")
         ->check(CLI::Validator(numberUpTo(kLongest, 0, true, "0 or more, 10000 at most"), ""));
     app.add_option("--drop-speed", options.m_dropSpeed,

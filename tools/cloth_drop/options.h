@@ -22,6 +22,8 @@ struct Options
     int m_clothColumns = 33;
     int m_clothRows = 33;
     double m_clothSize = 2.4;
+    int m_layers = 1;
+    bool m_self = false;
     double m_dropHeight = 0.3;
     double m_dropSpeed = 0;
     int m_steps = 240;

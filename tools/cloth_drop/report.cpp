@@ -94,6 +94,8 @@ Json asJson(const RunRecord& record)
     json["intersecting_pairs_end"] = summary.m_intersectingPairsEnd;
     json["intersecting_pairs_max"] = summary.m_intersectingPairsMax;
     json["intersecting_pairs_max_step"] = summary.m_intersectingPairsMaxStep;
+    json["self_intersecting_pairs_end"] = summary.m_selfPairsEnd;
+    json["self_intersecting_pairs_max"] = summary.m_selfPairsMax;
     json["stretch_mean"] = summary.m_stretch.m_mean;
     json["stretch_max"] = summary.m_stretch.m_max;
     json["rest_speed_mm_s"] = 1000 * summary.m_restSpeed;
@@ -217,7 +219,7 @@ std::string asCsv(const RunRecord& record, double dt)
 {
     std::string csv =
         "step,time_s,step_ms,collision_ms,contacts,penetration_max_m,gap_min_m,nodes_below_surface,"
-        "intersecting_pairs,nan_nodes,speed_rms_m_s,nodes_through";
+        "intersecting_pairs,nan_nodes,speed_rms_m_s,nodes_through,self_intersecting_pairs";
     for (const NamedPart& part : stepParts())
         csv += std::string(",") + part.m_name + "_ms";
     csv += "\n";
@@ -225,11 +227,11 @@ std::string asCsv(const RunRecord& record, double dt)
     for (std::size_t i = 0; i < record.m_steps.size(); ++i)
     {
         const StepRecord& step = record.m_steps[i];
-        std::snprintf(line, sizeof line, "%zu,%.9g,%.6f,%.6f,%zu,%.9g,%.9g,%zu,%zu,%zu,%.9g,%zu", i + 1,
+        std::snprintf(line, sizeof line, "%zu,%.9g,%.6f,%.6f,%zu,%.9g,%.9g,%zu,%zu,%zu,%.9g,%zu,%zu", i + 1,
                       static_cast<double>(i + 1) * dt, step.m_times.m_stepMs, step.m_times.m_collisionMs,
                       step.m_times.m_contacts, step.m_measure.m_penetrationMax, step.m_measure.m_gapMin,
                       step.m_measure.nodesBelow(), step.m_measure.m_intersectingPairs, step.m_measure.m_invalidNodes,
-                      step.m_speed, step.m_nodesThrough);
+                      step.m_speed, step.m_nodesThrough, step.m_selfPairs);
         csv += line;
         for (const NamedPart& part : stepParts())
             csv += "," + (hasParts(record) ? text("%.6f", step.m_times.m_parts.*part.m_ms) : std::string());
@@ -282,6 +284,8 @@ std::string asTable(const std::vector<NamedRun>& runs)
             return count(summary.m_intersectingPairsMax) +
                    (summary.m_intersectingPairsMax > 0 ? " (" + count(summary.m_intersectingPairsMaxStep) + ")" : "");
         });
+    add("cloth pairs intersecting, end (maximum)", [&](std::size_t i)
+        { return count(summaries[i].m_selfPairsEnd) + " (" + count(summaries[i].m_selfPairsMax) + ")"; });
     add("NaN nodes", [&](std::size_t i) { return count(summaries[i].m_invalidNodes); });
     add("hash", [&](std::size_t i) { return hashText(summaries[i].m_hash); });
     if (runs.size() == 1) return table;

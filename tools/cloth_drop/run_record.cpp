@@ -74,6 +74,7 @@ RunSummary summarise(const RunRecord& record)
             summary.m_intersectingPairsMax = measure.m_intersectingPairs;
             summary.m_intersectingPairsMaxStep = i + 1;
         }
+        summary.m_selfPairsMax = std::max(summary.m_selfPairsMax, step.m_selfPairs);
         summary.m_invalidNodes = std::max(summary.m_invalidNodes, measure.m_invalidNodes);
         depths.insert(depths.end(), measure.m_nodeDepths.begin(), measure.m_nodeDepths.end());
         if (step.m_times.m_contacts == 0) continue;
@@ -93,6 +94,7 @@ RunSummary summarise(const RunRecord& record)
     summary.m_nodesBelow = last.m_measure.nodesBelow();
     summary.m_nodesThrough = last.m_nodesThrough;
     summary.m_intersectingPairsEnd = last.m_measure.m_intersectingPairs;
+    summary.m_selfPairsEnd = last.m_selfPairs;
     summary.m_stretch = last.m_stretch;
     summary.m_restSpeed = restSpeedOf(record.m_steps);
     summary.m_hash = last.m_hash;

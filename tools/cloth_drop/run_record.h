@@ -16,6 +16,7 @@ struct StepRecord
     StepTimes m_times;
     StepMeasure m_measure;
     std::size_t m_nodesThrough = 0;  // whose way met the obstacle's surface, in this step or before (Crossings)
+    std::size_t m_selfPairs = 0;     // intersecting pairs of cloth triangles, of one cloth or two
     double m_speed = 0;              // m/s, root mean square of the nodes' speeds over the step
     MeshStretch m_stretch;           // against the cloth at the start
     std::uint64_t m_hash = 0;        // hash of all positions up to and including this step
@@ -55,6 +56,8 @@ struct RunSummary
     std::size_t m_intersectingPairsEnd = 0;      // after the last step
     std::size_t m_intersectingPairsMax = 0;      // after any step
     std::size_t m_intersectingPairsMaxStep = 0;  // the first step that had so many, from 1; 0: no step had any
+    std::size_t m_selfPairsEnd = 0;              // after the last step
+    std::size_t m_selfPairsMax = 0;              // after any step
     std::size_t m_invalidNodes = 0;              // most in any step
     MeshStretch m_stretch;                       // after the last step
     double m_restSpeed = 0;                      // m/s, root mean square over the last quarter of the steps

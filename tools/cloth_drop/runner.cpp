@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "oracle/crossings.h"
+#include "oracle/self_intersections.h"
 #include "scenes/mesh_writer.h"
 
 namespace drape
@@ -13,8 +14,8 @@ RunRecord startRecord(const Simulation& simulation, const DropScene& scene)
 {
     RunRecord record;
     record.m_prepareMs = simulation.prepareMs();
-    record.m_clothTriangles = scene.m_cloth.m_mesh.triangleCount();
-    record.m_clothNodes = scene.m_cloth.m_mesh.vertexCount();
+    record.m_clothTriangles = scene.m_sheets.triangleCount();
+    record.m_clothNodes = scene.m_sheets.vertexCount();
     record.m_obstacleTriangles = scene.m_obstacle.triangleCount();
     record.m_thickness = scene.m_thickness;
     return record;
@@ -25,10 +26,11 @@ bool runSimulation(Simulation& simulation, const DropScene& scene, int steps, co
                    const RunHooks& hooks, RunRecord& record, std::string& error)
 {
     record = startRecord(simulation, scene);
-    TriangleMesh lastFrame = scene.m_cloth.m_mesh;
-    PenetrationMeter meter(scene.m_obstacle, scene.m_cloth.m_mesh);
-    Crossings crossings(scene.m_obstacle, scene.m_cloth.m_mesh.m_positions);
-    const StretchMeter stretch(scene.m_cloth.m_mesh);
+    TriangleMesh lastFrame = scene.m_sheets;
+    PenetrationMeter meter(scene.m_obstacle, scene.m_sheets);
+    Crossings crossings(scene.m_obstacle, scene.m_sheets.m_positions);
+    SelfIntersections self(scene.m_sheets);
+    const StretchMeter stretch(scene.m_sheets);
     std::uint64_t hash = kHashStart;
     const bool frames = !framesFolder.empty();
     if (frames && !(writeMesh(framesFolder + "/obstacle.ply", scene.m_obstacle, error) &&
@@ -44,6 +46,7 @@ bool runSimulation(Simulation& simulation, const DropScene& scene, int steps, co
         step.m_speed = rmsSpeed(lastFrame.m_positions, positions, scene.m_dt);
         lastFrame.m_positions = positions;
         step.m_measure = meter.measure(lastFrame.m_positions.data());
+        step.m_selfPairs = self.find(positions).size();
         step.m_stretch = stretch.measure(positions);
         crossings.follow(positions);
         step.m_nodesThrough = crossings.nodes();

@@ -24,6 +24,7 @@ Json asLine(const StepRecord& step)
             {"gap", step.m_measure.m_gapMin},
             {"depths", step.m_measure.m_nodeDepths},
             {"through", step.m_nodesThrough},
+            {"self", step.m_selfPairs},
             {"pairs", step.m_measure.m_intersectingPairs},
             {"invalid", step.m_measure.m_invalidNodes},
             {"speed", step.m_speed},
@@ -62,6 +63,7 @@ StepRecord stepFromLine(const std::string& text, std::vector<float>& positions)
     step.m_measure.m_gapMin = line.at("gap").is_null() ? 0.0 : line.at("gap").get<double>();
     step.m_measure.m_nodeDepths = line.at("depths").get<std::vector<float>>();
     step.m_nodesThrough = line.at("through");
+    step.m_selfPairs = line.at("self");
     step.m_measure.m_intersectingPairs = line.at("pairs");
     step.m_measure.m_invalidNodes = line.at("invalid");
     step.m_speed = line.at("speed").is_null() ? 0.0 : line.at("speed").get<double>();

@@ -55,6 +55,12 @@ BodyContacts* CollisionStep::contactsOf(const btSoftBody& body)
     return found == m_byBody.end() ? nullptr : &m_bodies[found->second];
 }
 
+void CollisionStep::watch(const btSoftBody& body)
+{
+    const auto found = m_byBody.find(&body);
+    if (found != m_byBody.end()) m_mirrors[found->second]->watch(true);
+}
+
 void CollisionStep::addBody(ClothMirror& cloth, btSoftBody* body)
 {
     // Reserves room for all, so that clear() allocates no memory.

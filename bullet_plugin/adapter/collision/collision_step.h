@@ -45,6 +45,8 @@ public:
     // their predicted paths. Ends those paths before anything that they would have passed. Returns these bodies, with
     // their contacts along the paths.
     std::vector<BodyContacts*> checkOffPath();
+    // Has checkOffPath() check the body.
+    void watch(const btSoftBody& body);
     // Detects along the bodies' real paths, which end at their current positions.
     void detectRealPaths();
     // Returns whether a path of the last detection passes a surface.

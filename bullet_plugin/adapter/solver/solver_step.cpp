@@ -13,6 +13,9 @@ namespace drape
 {
 namespace
 {
+// Passes of the guard after which cloth that it and obstacles push to and fro stands still.
+constexpr int kMostGuardRounds = 4;
+
 // Returns the number of elements that the step's memory is proportional to.
 std::size_t elementsOf(const StepStatistics& step)
 {
@@ -74,7 +77,8 @@ void SoftBodySolver::Work::chooseStage()
     for (int i = 0; i < m_bodies.size(); ++i)
         nodes += substepNodes(*m_bodies[i]);
     if (m_state.m_kept.anyBegun()) nodes = SIZE_MAX;  // wherever others would be solved
-    if (nodes > 0) m_stage = m_state.pipeline().solveStage(nodes);
+    m_meetings.begin(m_bodies, [this](const btSoftBody& body) { return isSteppedBody(body); });
+    if (nodes > 0 && !m_meetings.any()) m_stage = m_state.pipeline().solveStage(nodes);
 }
 
 // Finds the contacts of the step.
@@ -112,6 +116,49 @@ void SoftBodySolver::Work::detect()
     m_parts.m_writeMs = watch.lapMs() - statistics.m_waitMs - (step.uploadMs() - uploadMs);
 }
 
+// Finds the contacts of bodies with themselves and with each other. Returns their rows, null if there are none.
+ClothRows* SoftBodySolver::Work::findMeetings()
+{
+    if (!m_meetings.any()) return nullptr;
+    const auto nodesOf = [this](const btSoftBody& body)
+    { return substepNodes(body) > 0 ? &clothOf(body).m_nodes : nullptr; };
+    ClothRows& rows = m_meetings.find(nodesOf);
+    const auto meets = [&](const SolverCloth& cloth) { return m_meetings.hasRows(cloth.m_contacts->m_nodes); };
+    for (SolverCloth& cloth : m_touched)
+        cloth.m_meetsCloth = meets(cloth);
+    const auto first =
+        std::stable_partition(m_free.begin(), m_free.end(), [&](const SolverCloth& cloth) { return !meets(cloth); });
+    for (auto cloth = first; cloth != m_free.end(); ++cloth)
+    {
+        cloth->m_meetsCloth = true;
+        m_touched.push_back(*cloth);
+    }
+    m_free.erase(first, m_free.end());
+    return &rows;
+}
+
+// Keeps cloth from meeting itself and other cloth on the way to where the solver put it, and checks bodies anew beside
+// obstacles whose nodes did not get there.
+void SoftBodySolver::Work::guardMeetings()
+{
+    if (!m_meetings.any()) return;
+    for (int round = 1;; ++round)
+    {
+        bool isBesideMesh = false;
+        for (btSoftBody* body : m_meetings.guard())
+        {
+            if (!contactsOf(*body)) continue;
+            m_step->watch(*body);
+            isBesideMesh = true;
+        }
+        if (!isBesideMesh) return;
+        if (round == kMostGuardRounds) break;
+        closeOffPath(m_step->checkOffPath());
+    }
+    m_meetings.holdStill();
+    m_state.m_statistics.m_status |= kStepMotionHeldBack;
+}
+
 // Solves the bodies that the device has not solved behind the detection, and writes all results back.
 void SoftBodySolver::Work::solveBodies()
 {
@@ -121,11 +168,13 @@ void SoftBodySolver::Work::solveBodies()
     Stopwatch watch;
     takeSubsteps(m_bodies);
     takeBulletsBodies(m_bodies);
+    ClothRows* const rows = findMeetings();
     parts.m_readMs += watch.lapMs();
     if (solveByBullet(m_bodies)) parts.m_bulletMs += watch.lapMs();
     // The host solves what the device has refused.
     m_state.m_statistics.m_clothsSolvedOnDevice =
-        m_onDevice + m_solver->solve(m_touched, m_free, m_state.m_found.source(), m_onDevice > 0 ? nullptr : m_stage);
+        m_onDevice +
+        m_solver->solve(m_touched, m_free, m_state.m_found.source(), m_onDevice > 0 ? nullptr : m_stage, rows);
     double linksMs = 0;
     for (const std::unique_ptr<BulletLinks>& links : m_bulletLinks)
         linksMs += links->ms();
@@ -176,6 +225,7 @@ void SoftBodySolver::Work::solveStep()
     m_begun = false;
     m_onDevice = 0;
     m_stage = nullptr;
+    m_meetings.clear();
     leaveToBullet();
     parts.m_readMs += watch.lapMs();
     detect();
@@ -186,6 +236,7 @@ void SoftBodySolver::Work::solveStep()
     const double waitMs = statistics.m_waitMs, uploadMs = step->uploadMs();
     watch.lapMs();
     closeOffPath(step->checkOffPath());
+    guardMeetings();
     step->reportMeetingDeformed();
     step->end();
     statistics.m_clothsKept = endKept(m_bodies);

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "BulletSoftBody/btSoftBody.h"
+#include "bullet_plugin/adapter/cloth_cloth/cloth_meetings.h"
 #include "bullet_plugin/adapter/collision/collision_step.h"
 #include "bullet_plugin/adapter/solver/bullet_links.h"
 #include "bullet_plugin/adapter/solver/substep_body.h"
@@ -87,6 +88,8 @@ struct SoftBodySolver::Work
     void detect();
     void solveBodies();
     void closeOffPath(const std::vector<BodyContacts*>& bodies);
+    ClothRows* findMeetings();
+    void guardMeetings();
 
     // Prediction.
     void predict(const Bodies& bodies, btScalar dt);
@@ -132,6 +135,7 @@ struct SoftBodySolver::Work
     ThreadTeam& m_threads;
     btScalar m_dt = 0;                      // s, of the prediction
     std::unique_ptr<CollisionStep> m_step;  // null until it is needed
+    ClothMeetings m_meetings{m_state};
     std::unique_ptr<StepSolver> m_solver;
     UsageWatch m_usage;
     std::unordered_map<const btSoftBody*, std::unique_ptr<SubstepBody>> m_substeps;  // bodies whose links Drape solves

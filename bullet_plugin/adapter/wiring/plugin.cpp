@@ -247,6 +247,20 @@ void Plugin::setOneSided(const btCollisionShape* shape, bool oneSided)
     if (m_state) m_state->setOneSided(shape, oneSided);
 }
 
+void Plugin::setSelfCollision(const btSoftBody& body, bool collides, double thickness)
+{
+    if (!m_state) return;
+    if (collides)
+        guardedOr(false,
+                  [&]
+                  {
+                      m_state->m_selfCollision.set(body, btScalar(thickness));
+                      return true;
+                  });
+    else
+        m_state->m_selfCollision.clear(body);
+}
+
 std::string Plugin::report() const
 {
     if (!m_state) return outOfMemory();

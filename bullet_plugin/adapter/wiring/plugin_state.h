@@ -17,6 +17,7 @@
 #include "BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h"
 #include "BulletSoftBody/btSoftBodyConcaveCollisionAlgorithm.h"
 #include "drape/plugin.h"
+#include "bullet_plugin/adapter/cloth_cloth/self_collision.h"
 #include "bullet_plugin/adapter/collision/found_contacts.h"
 #include "bullet_plugin/adapter/kept/kept_bodies.h"
 #include "bullet_plugin/adapter/motion/kinematic_motion.h"
@@ -133,6 +134,7 @@ public:
     StepStatistics m_statistics;
     FoundContacts m_found;
     KeptBodies m_kept{*this};
+    SelfCollision m_selfCollision;
 
 private:
     struct Owned

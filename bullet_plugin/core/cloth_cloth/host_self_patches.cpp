@@ -83,6 +83,14 @@ void HostSelfPatches::cull(const SelfStep& step, std::uint64_t limit, ThreadTeam
     m_retries = fillGrowing(m_tests, limit, fill);
 }
 
+bool HostSelfPatches::copyTests(std::uint64_t limit, std::vector<FeatureTest>& tests) const
+{
+    tests.clear();
+    if (m_counters.m_selfTests > limit) return false;
+    tests.assign(m_tests.begin(), m_tests.begin() + std::ptrdiff_t(m_counters.m_selfTests));
+    return true;
+}
+
 std::size_t HostSelfPatches::cullPatches(const SelfStep& step, ItemRange patches, const TestList& list,
                                          ThreadTeam& threads)
 {

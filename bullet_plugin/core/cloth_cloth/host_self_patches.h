@@ -25,6 +25,9 @@ public:
     // exceed theirs.
     void findContacts(const SelfStep& step, SelfStepLimits limits, ThreadTeam& threads, std::vector<Contact>& contacts);
 
+    // Copies the pairs of the last cull(), in any order; false, with none copied, if they exceeded the limit.
+    bool copyTests(std::uint64_t limit, std::vector<FeatureTest>& tests) const;
+
     // Returns how many pairs of features each cloth slot has, without listing them: exact up to the limit, and
     // one more than the limit where there are more. After update().
     std::vector<std::uint64_t> countTests(const SelfStep& step, std::uint64_t limit, ThreadTeam& threads);

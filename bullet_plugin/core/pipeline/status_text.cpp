@@ -28,6 +28,7 @@ std::string statusText(std::uint32_t status)
         {kStepSurfacePassed, "a surface may have been passed where links pulled"},
         {kStepMotionHeldBack, "nodes of a cloth that came apart were held back"},
         {kStepOutOfMemory, "memory ran out and cloth beside meshes stood still"},
+        {kStepClothsMeet, "cloth meets itself or other cloth"},
     };
     return guardedOr(std::string(kOutOfMemory),
                      [&]

@@ -5,6 +5,7 @@
 
 namespace drape
 {
+class ClothRows;
 class RigidRows;
 class Substeps;
 struct KeptStep;
@@ -32,5 +33,6 @@ struct SolverCloth
     CallersLinks* m_links = nullptr;
     RigidRows* m_rigid = nullptr;      // with m_substeps alone; null if there are none
     const KeptStep* m_kept = nullptr;  // with m_substeps alone: the nodes are on the device, not in m_contacts
+    bool m_meetsCloth = false;         // it has rows of ClothRows
 };
 }  // namespace drape

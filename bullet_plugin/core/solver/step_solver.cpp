@@ -4,6 +4,7 @@
 #include <functional>
 #include <iterator>
 
+#include "bullet_plugin/core/solver/host/cloth_rows.h"
 #include "bullet_plugin/core/solver/host/momentum.h"
 #include "kernels/lib/solver/closing_sweeps.h"
 #include "rigid_rows.h"
@@ -14,6 +15,8 @@ namespace
 {
 // Minimum nodes for sharing cloths among threads; a substep takes 50 ns a node.
 constexpr std::size_t kLeastNodesShared = 2048;
+// Sweeps over rows of cloth with cloth after each sweep over links, and after the last substep.
+constexpr int kClothSweeps = 4, kClosingRowSweeps = 16;
 // Minimum nodes for sharing keepMomenta() among threads: it takes 20 ns a node.
 constexpr std::size_t kLeastKeepingShared = 8192;
 
@@ -158,7 +161,18 @@ void StepSolver::sweepInTurns()
         m_team.run(m_meeting);
         for (const ContactSweep* sweep : m_turn)
             if (RigidRows* rigid = sweep->cloth().m_rigid) rigid->project();
+        for (int k = 0; m_rows && k < kClothSweeps; ++k)
+            m_rows->project(DRAPE_TURN_RELAXATION, 0);
     }
+}
+
+// Projects rows of cloth with cloth until they hold, or kClosingRowSweeps times. Contacts with obstacles follow.
+void StepSolver::closeRows()
+{
+    if (!m_rows) return;
+    m_rows->begin();
+    for (int i = 0; i < kClosingRowSweeps; ++i)
+        if (m_rows->project(1, kTolerated) <= kClosingTolerance) break;
 }
 
 // Runs an iteration's limits and contact sweeps.
@@ -183,6 +197,7 @@ void StepSolver::sweepContacts(int iteration)
     m_team.forCloths(m_turn, boundShifts);
     select(m_iterating, m_turn, [](const ContactSweep* sweep) { return hasContacts(sweep) || sweep->cloth().m_rigid; });
     restart(iteration);
+    if (m_rows) m_rows->begin();
     sweepInTurns();
     for (const ContactSweep* sweep : m_iterating)
         if (RigidRows* rigid = sweep->cloth().m_rigid) rigid->end();
@@ -270,6 +285,7 @@ void StepSolver::beginClosing()
 void StepSolver::close()
 {
     beginClosing();
+    closeRows();
     applyLimits(m_all);
     for (ContactSweep* sweep : m_touching)
         sweep->restart(1, 0, sweep->cloth().m_substeps ? toleratedViolation(sweep->contacts()) : 0.0f);
@@ -288,6 +304,7 @@ void StepSolver::close()
     holdOthers();
     m_team.forCloths(m_all, [](ContactSweep& sweep) { addShifts(sweep.contacts()); });
     m_team.limitSpeeds(m_touching);
+    if (m_rows && !m_all.empty()) m_rows->limitSpeeds(m_all.front()->contacts().m_perSecond);
     for (ContactSweep* sweep : m_touching)
         sweep->contacts().m_mayHavePassed = SweepTeam::mayHavePassed(*sweep);
     const auto end = [](ContactSweep& sweep)
@@ -328,7 +345,7 @@ void StepSolver::keepMomenta(const std::vector<SolverCloth>& cloths)
     std::size_t nodes = 0;
     for (const SolverCloth& cloth : cloths)
     {
-        if (cloth.m_kept || !cloth.m_contacts->m_isSolved || !keepsMomentum(cloth)) continue;
+        if (cloth.m_kept || cloth.m_meetsCloth || !cloth.m_contacts->m_isSolved || !keepsMomentum(cloth)) continue;
         m_keeping.push_back(&cloth);
         nodes += cloth.m_contacts->m_nodes.count();
     }
@@ -394,15 +411,17 @@ std::size_t StepSolver::finishBehind(SolveStage& stage, bool hasWaited)
 }
 
 std::size_t StepSolver::solve(const std::vector<SolverCloth>& cloths, const std::vector<SolverCloth>& free,
-                              const ContactSource& source, SolveStage* stage)
+                              const ContactSource& source, SolveStage* stage, ClothRows* rows)
 {
     divide(cloths, free, stage);
+    m_rows = rows && !rows->empty() ? rows : nullptr;
     if (!m_onDevice.empty())
     {
         m_packed.pack(m_onDevice, source, *stage);
         stage->submit(m_packed.step());
     }
     solveOnHost(m_onHost, m_freeOnHost, source);
+    m_rows = nullptr;
     if (m_onDevice.empty()) return 0;
     const std::size_t solved = takeResults(stage->finish(), *stage, false);
     m_refused.clear();

@@ -61,9 +61,9 @@ public:
     // Solves the cloths and marks them as solved. Cloths with CallersLinks are written back; nodes of others stay where
     // the solver leaves them. free: cloths without contacts, limits or rigid rows. stage: solves the cloths that fit
     // (PackedStep); null if there is none. If the device fails, the host solves them all. Returns the number of cloths
-    // that the device solved.
+    // that the device solved. rows: contacts between the cloths, which must all be in `cloths`; stage is null then.
     std::size_t solve(const std::vector<SolverCloth>& cloths, const std::vector<SolverCloth>& free,
-                      const ContactSource& source, SolveStage* stage = nullptr);
+                      const ContactSource& source, SolveStage* stage = nullptr, ClothRows* rows = nullptr);
     // Enqueues the whole step of the cloths, behind a detection whose contacts stay on the device if there is one.
     // Returns false, with nothing enqueued, if the device cannot solve all of them.
     bool submitBehind(const std::vector<SolverCloth>& cloths, const std::vector<SolverCloth>& free,
@@ -102,6 +102,7 @@ private:
     void sweepContacts(int iteration);
     void restart(int iteration);
     void sweepInTurns();
+    void closeRows();
     void endIteration(int iteration);
     void iterate();
     void runAgain(const Cloths& cloths);
@@ -117,6 +118,7 @@ private:
     // Cloths of the step, cloths with contacts, and subsets of one iteration or sweep.
     Cloths m_all, m_touching, m_iterating, m_turn, m_meeting, m_open, m_resting, m_others;
     std::vector<LinkedNodes> m_own;  // working memory of forSubsteps()
+    ClothRows* m_rows = nullptr;     // the step's; null for none
     PackedStep m_packed;
     std::vector<const SolverCloth*> m_keeping;                               // working memory of keepMomenta()
     std::vector<SolverCloth> m_onDevice, m_onHost, m_freeOnHost, m_refused;  // working memory of solve()

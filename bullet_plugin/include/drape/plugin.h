@@ -154,6 +154,15 @@ public:
     // Updates the trees of all soft bodies of a world: before debugDrawWorld() with btIDebugDraw::DBG_DrawAabb.
     void updateNodeTrees(const btCollisionWorld& world);
 
+    // Lets a soft body collide with itself, and with the other bodies for which this is on, as far as Bullet's filters
+    // let the two collide. Off by default. thickness: m, at which layers rest on each other; 0 means twice the body's
+    // margin. Bodies of two thicknesses keep their mean. Features that are nearer when this is switched on keep half
+    // of that distance. Friction is the greater kDF of the two. Cloth that does not intersect itself or another
+    // body never does so at the end of a step; StepStatistics::m_clothPairsMeeting counts exceptions. The links of
+    // these bodies are solved on the host. If memory runs out, nothing changes. The body is remembered by its
+    // address until this is switched off.
+    void setSelfCollision(const btSoftBody& body, bool collides, double thickness = 0);
+
     // Makes only the front of a mesh shape solid: the side from which its triangles run counter-clockwise. Cloth behind
     // it may come out. Off by default. A mirrored mesh keeps its front. The shape is remembered by its address until
     // this is switched off. If memory runs out, nothing changes, and cloth stands still in the next step with

@@ -82,7 +82,9 @@ enum StepStatusBits : std::uint32_t
     // Nodes of a cloth that came apart moved less far than predicted; its contacts are complete.
     kStepMotionHeldBack = 1u << 8,
     // Memory ran out in the step or in a call before it. Cloth that Drape handles stood still; later steps go on.
-    kStepOutOfMemory = 1u << 9
+    kStepOutOfMemory = 1u << 9,
+    // Cloth meets itself or other cloth, or may: see StepStatistics::m_clothPairsMeeting.
+    kStepClothsMeet = 1u << 10
 };
 
 // Returns `status` in words: one clause per bit, joined by "; ". Empty for a good step; "out of memory" if memory runs
@@ -194,6 +196,11 @@ struct StepStatistics : StepCounts, StepParts
     std::size_t m_deviceWaits = 0;
     // Obstacles of the step's pairs that were not built, refitted or moved.
     std::size_t m_obstaclesKept = 0;
+    // Nodes whose paths were shortened so that cloth does not meet itself or other cloth (Plugin::setSelfCollision()).
+    std::size_t m_nodesShortened = 0;
+    // Pairs of cloth that are not guarded, with kStepClothsMeet: triangles that intersect at the step's start, and
+    // features that touch there or that pinned nodes bring together. Other pairs are guarded all the same.
+    std::size_t m_clothPairsMeeting = 0;
     // True if there was nothing to do: no pair, or nothing that could touch.
     bool m_skipped = false;
     // True if the host back end ran the step, by choice or in place of the device.

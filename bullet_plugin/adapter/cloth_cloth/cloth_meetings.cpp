@@ -1,0 +1,251 @@
+#include "bullet_plugin/adapter/cloth_cloth/cloth_meetings.h"
+
+#include <algorithm>
+
+#include "bullet_plugin/adapter/mirrors/solid_links.h"
+#include "bullet_plugin/adapter/pairs/eligibility.h"
+#include "bullet_plugin/adapter/solver/body_nodes.h"
+#include "bullet_plugin/core/solver/topology/cloth_faces.h"
+
+namespace drape
+{
+namespace
+{
+std::uint64_t mix(std::uint64_t hash, std::uint64_t value)
+{
+    return (hash ^ value) * 0x100000001b3ull;
+}
+
+// Lists the body's triangles whose nodes are all its own, and the links that are solid.
+void readFaces(const btSoftBody& body, std::vector<std::int32_t>& triangles, std::vector<std::int32_t>& edges)
+{
+    for (int f = 0; f < body.m_faces.size(); ++f)
+    {
+        std::int32_t nodes[3];
+        for (int k = 0; k < 3; ++k)
+            nodes[k] = nodeIndex(body, body.m_faces[f].m_n[k]);
+        if (std::count(nodes, nodes + 3, kForeign) == 0) triangles.insert(triangles.end(), nodes, nodes + 3);
+    }
+    SolidLinks links;
+    links.read(body, triangles);
+    edges.assign(links.nodes().begin(), links.nodes().end());
+}
+}  // namespace
+
+// Returns a number that changes with the members, their thickness, and their faces.
+std::uint64_t ClothMeetings::layoutHash() const
+{
+    std::uint64_t hash = 0xcbf29ce484222325ull;
+    for (const Member& member : m_members)
+    {
+        const btSoftBody& body = *member.m_body;
+        hash = mix(mix(hash, reinterpret_cast<std::uintptr_t>(&body)), std::uint64_t(member.m_thickness * 1e7));
+        hash = mix(mix(hash, std::uint64_t(body.m_nodes.size())), std::uint64_t(body.m_links.size()));
+        for (int f = 0; f < body.m_faces.size(); ++f)
+            for (int k = 0; k < 3; ++k)
+                hash = mix(hash, std::uint64_t(body.m_faces[f].m_n[k] - &body.m_nodes[0]));
+    }
+    return hash;
+}
+
+void ClothMeetings::assignSet()
+{
+    std::vector<std::vector<std::int32_t>> triangles(m_members.size()), edges(m_members.size());
+    std::vector<SetMember> members;
+    btScalar most = 0;
+    for (std::size_t i = 0; i < m_members.size(); ++i)
+    {
+        const btSoftBody& body = *m_members[i].m_body;
+        readFaces(body, triangles[i], edges[i]);
+        members.push_back({triangles[i].data(), triangles[i].size() / 3, edges[i].data(), edges[i].size() / 2,
+                           m_state.m_selfCollision.find(body)->m_rest.data(),
+                           static_cast<std::size_t>(body.m_nodes.size())});
+        most = std::max(most, m_members[i].m_thickness);
+    }
+    m_set.assign(members, float(most));
+}
+
+void ClothMeetings::begin(const Bodies& bodies, const std::function<bool(const btSoftBody&)>& isStepped)
+{
+    m_members.clear();
+    bool anyStepped = false;
+    for (int i = 0; m_state.m_selfCollision.any() && i < bodies.size(); ++i)
+    {
+        const SelfColliding* const self = m_state.m_selfCollision.find(*bodies[i]);
+        if (!self || bodies[i]->m_nodes.size() == 0) continue;
+        const btScalar thickness = SelfCollision::thicknessOf(*bodies[i], *self);
+        const bool moves = isStepped(*bodies[i]);
+        anyStepped = anyStepped || moves;
+        if (thickness > 0) m_members.push_back({bodies[i], thickness, moves, nullptr, false});
+    }
+    if (!anyStepped) m_members.clear();
+    if (m_members.empty()) return;
+    const std::uint64_t layout = layoutHash();
+    if (layout != m_layout || m_set.memberCount() != m_members.size())
+    {
+        assignSet();
+        m_lastEnds.clear();
+    }
+    m_layout = layout;
+}
+
+// Returns whether Bullet's filters let two members collide.
+bool ClothMeetings::canMeet(std::size_t a, std::size_t b) const
+{
+    if (a == b) return true;
+    const btSoftBody &first = *m_members[a].m_body, &second = *m_members[b].m_body;
+    const btBroadphaseProxy *p = first.getBroadphaseHandle(), *q = second.getBroadphaseHandle();
+    const bool pass = p && q && (p->m_collisionFilterGroup & q->m_collisionFilterMask) &&
+                      (q->m_collisionFilterGroup & p->m_collisionFilterMask);
+    return pass && respond(first, second);
+}
+
+// Returns the thickness of two members' features, m.
+float ClothMeetings::thicknessOf(std::size_t a, std::size_t b) const
+{
+    return float(0.5f * (m_members[a].m_thickness + m_members[b].m_thickness));
+}
+
+// Calls write(member, node of Bullet's, node of the set) for all nodes.
+template <class Write>
+void ClothMeetings::forNodes(const Write& write)
+{
+    for (std::size_t i = 0; i < m_members.size(); ++i)
+        for (int k = 0; k < m_members[i].m_body->m_nodes.size(); ++k)
+            write(m_members[i], m_members[i].m_body->m_nodes[k], m_set.firstNode(i) + std::size_t(k));
+}
+
+void ClothMeetings::addRow(const SelfContactView& view)
+{
+    const int split = view.m_kind == DRAPE_SELF_EDGE_EDGE ? 2 : 1;
+    const std::size_t first = m_set.memberOf(std::size_t(view.m_nodes[0]));
+    const std::size_t second = m_set.memberOf(std::size_t(view.m_nodes[3]));
+    const std::uint32_t nodes[4] = {std::uint32_t(view.m_nodes[0]), std::uint32_t(view.m_nodes[1]),
+                                    std::uint32_t(view.m_nodes[2]), std::uint32_t(view.m_nodes[3])};
+    if (!isGuarded(nodes)) return;
+    ClothContact contact = {};
+    contact.m_split = split;
+    bool moves = false;
+    for (int k = 0; k < 4; ++k)
+    {
+        Member& member = m_members[k < split ? first : second];
+        const std::size_t node = std::size_t(view.m_nodes[k]);
+        contact.m_cloths[k] = member.m_nodes;
+        contact.m_nodes[k] = std::uint32_t(node - m_set.firstNode(k < split ? first : second));
+        contact.m_resting[k] = vec3Load(m_set.start(), std::uint32_t(node));
+        moves = moves || member.m_nodes;
+    }
+    if (!moves) return;
+    const btSoftBody &a = *m_members[first].m_body, &b = *m_members[second].m_body;
+    contact.m_normal = vec3(view.m_normal[0], view.m_normal[1], view.m_normal[2]);
+    contact.m_gap0 = view.m_gap0;
+    contact.m_thickness = std::min(view.m_thickness, thicknessOf(first, second));
+    contact.m_friction = float(std::max(a.m_cfg.kDF, b.m_cfg.kDF));  // Bullet's between soft bodies
+    contact.m_hardness = float(std::min(a.m_cfg.kSHR, b.m_cfg.kSHR));
+    m_rows.add(contact);
+    m_members[first].m_hasRows = m_members[second].m_hasRows = true;
+}
+
+// Looks for triangles that intersect where the step starts, unless it starts where the guard left the last one.
+void ClothMeetings::checkStarts()
+{
+    m_meeting.clear();
+    const bool isKnown =
+        m_lastEnds.size() == 3 * m_set.nodeCount() && std::equal(m_lastEnds.begin(), m_lastEnds.end(), m_set.start());
+    if (!isKnown) m_set.findMeeting(m_meeting);
+    m_meets.assign(m_set.nodeCount(), 0);
+    for (const std::uint32_t node : m_meeting)
+        m_meets[node] = 1;
+}
+
+// Returns whether all nodes belong to triangles that intersect others: the features of these must pass each other to
+// come apart.
+bool ClothMeetings::isMeeting(const std::uint32_t nodes[4]) const
+{
+    return !m_meeting.empty() && std::all_of(nodes, nodes + 4, [&](std::uint32_t node) { return m_meets[node] != 0; });
+}
+
+bool ClothMeetings::isGuarded(const std::uint32_t nodes[4]) const
+{
+    return canMeet(m_set.memberOf(nodes[0]), m_set.memberOf(nodes[3])) && !isMeeting(nodes);
+}
+
+ClothRows& ClothMeetings::find(const NodesOf& nodesOf)
+{
+    m_rows.clear();
+    for (Member& member : m_members)
+    {
+        member.m_nodes = member.m_isStepped ? nodesOf(*member.m_body) : nullptr;
+        member.m_hasRows = false;
+    }
+    const auto write = [&](const Member& member, const btSoftBody::Node& node, std::size_t index)
+    {
+        const std::size_t own = index - m_set.firstNode(std::size_t(&member - m_members.data()));
+        float *start = m_set.start() + 3 * index, *end = m_set.end() + 3 * index;
+        writePosition(member.m_nodes ? vectorOf(member.m_nodes->start(own)) : node.m_x, start);
+        writePosition(member.m_nodes ? vectorOf(member.m_nodes->end(own)) : node.m_x, end);
+    };
+    forNodes(write);
+    checkStarts();
+    if (!m_set.findContacts(1 + m_state.settings().m_activation, m_state.settings().m_candidateLimit, m_state.threads(),
+                            m_contacts))
+        m_contacts.clear();
+    for (const Contact& contact : m_contacts)
+        addRow(m_set.view(contact));
+    m_state.m_statistics.m_selfContacts += m_contacts.size();
+    return m_rows;
+}
+
+bool ClothMeetings::hasRows(const SolverNodes& nodes) const
+{
+    return std::any_of(m_members.begin(), m_members.end(),
+                       [&](const Member& member) { return member.m_nodes == &nodes && member.m_hasRows; });
+}
+
+const std::vector<btSoftBody*>& ClothMeetings::guard()
+{
+    m_shortened.clear();
+    m_isHeld.assign(m_set.nodeCount(), 0);
+    const auto write = [&](const Member& member, const btSoftBody::Node& node, std::size_t index)
+    {
+        float *start = m_set.start() + 3 * index, *end = m_set.end() + 3 * index;
+        writePosition(member.m_isStepped ? node.m_q : node.m_x, start);
+        writePosition(node.m_x, end);
+        m_isHeld[index] = !member.m_isStepped || !(node.m_im > 0);
+    };
+    forNodes(write);
+    const GuardResult result = m_guard.apply(
+        m_set, m_isHeld, [this](const std::uint32_t* nodes) { return isGuarded(nodes); },
+        m_state.settings().m_candidateLimit, m_state.threads());
+    m_lastEnds.clear();
+    if (m_meeting.empty() && result.m_startMeeting == 0 && result.m_forced == 0)
+        m_lastEnds.assign(m_set.end(), m_set.end() + 3 * m_set.nodeCount());
+    StepStatistics& statistics = m_state.m_statistics;
+    statistics.m_nodesShortened += result.m_shortened;
+    statistics.m_clothPairsMeeting = m_meeting.size() / 6 + result.m_startMeeting + result.m_forced;
+    if (statistics.m_clothPairsMeeting > 0) statistics.m_status |= kStepClothsMeet;
+    if (result.m_tooMany) statistics.m_status |= kStepMotionHeldBack;
+    if (result.m_shortened == 0) return m_shortened;
+    const auto read = [&](Member& member, btSoftBody::Node& node, std::size_t index)
+    {
+        const double share = m_guard.shares()[index];
+        if (!(share < 1)) return;
+        node.m_x = vectorOf(vec3Load(m_set.end(), std::uint32_t(index)));
+        node.m_v *= btScalar(share);
+        if (m_shortened.empty() || m_shortened.back() != member.m_body) m_shortened.push_back(member.m_body);
+    };
+    forNodes(read);
+    return m_shortened;
+}
+
+void ClothMeetings::holdStill()
+{
+    const auto hold = [](const Member& member, btSoftBody::Node& node, std::size_t)
+    {
+        if (!member.m_isStepped || !(node.m_im > 0)) return;
+        node.m_x = node.m_q;
+        node.m_v.setZero();
+    };
+    forNodes(hold);
+}
+}  // namespace drape

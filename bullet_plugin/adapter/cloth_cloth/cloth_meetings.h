@@ -1,0 +1,77 @@
+// Contacts of the soft bodies of a step with themselves and with each other, and the guard that keeps them apart.
+//
+// Input: the solver's bodies that SelfCollision names. begin() lists them, find() makes rows of their contacts along
+// the predicted paths, and guard() shortens the paths that the solver made where features of cloth would meet. All on
+// the host. Errors: exceptions pass through.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "BulletSoftBody/btSoftBody.h"
+#include "bullet_plugin/adapter/wiring/plugin_state.h"
+#include "bullet_plugin/core/cloth_cloth/cloth_guard.h"
+#include "bullet_plugin/core/solver/host/cloth_rows.h"
+
+namespace drape
+{
+class ClothMeetings
+{
+public:
+    using Bodies = btAlignedObjectArray<btSoftBody*>;
+    // Returns the solver's nodes of a body that moves in the step, null for one that rests.
+    using NodesOf = std::function<SolverNodes*(const btSoftBody&)>;
+
+    explicit ClothMeetings(PluginState& state) : m_state(state) {}
+
+    // Lists the bodies of the step. isStepped: whether a body moves in it.
+    void begin(const Bodies& bodies, const std::function<bool(const btSoftBody&)>& isStepped);
+    void clear() { m_members.clear(); }
+    bool any() const { return !m_members.empty(); }
+    // Finds the contacts along the recorded paths, and returns their rows. Nodes must stay in place until the step's
+    // end.
+    ClothRows& find(const NodesOf& nodesOf);
+    // Returns whether a body with these nodes has a row.
+    bool hasRows(const SolverNodes& nodes) const;
+    // Shortens the way of Bullet's nodes from their starts (m_q) to where they are (m_x). Lists the bodies with nodes
+    // that were shortened. Adds to the statistics.
+    const std::vector<btSoftBody*>& guard();
+    // Puts all free nodes back to their starts, at rest.
+    void holdStill();
+
+private:
+    struct Member
+    {
+        btSoftBody* m_body;
+        btScalar m_thickness;  // m
+        bool m_isStepped;
+        SolverNodes* m_nodes;
+        bool m_hasRows;
+    };
+
+    std::uint64_t layoutHash() const;
+    void assignSet();
+    bool canMeet(std::size_t a, std::size_t b) const;
+    float thicknessOf(std::size_t a, std::size_t b) const;
+    template <class Write>
+    void forNodes(const Write& write);
+    void addRow(const SelfContactView& contact);
+    void checkStarts();
+    bool isMeeting(const std::uint32_t nodes[4]) const;
+    bool isGuarded(const std::uint32_t nodes[4]) const;
+
+    PluginState& m_state;
+    std::vector<Member> m_members;
+    ClothSet m_set;
+    std::uint64_t m_layout = 0;
+    std::vector<Contact> m_contacts;
+    ClothRows m_rows;
+    ClothGuard m_guard;
+    std::vector<unsigned char> m_isHeld;
+    std::vector<float> m_lastEnds;         // the set's nodes after the last step; empty if triangles may meet there
+    std::vector<std::uint32_t> m_meeting;  // see ClothSet::findMeeting()
+    std::vector<unsigned char> m_meets;    // by node of the set: it belongs to such a triangle
+    std::vector<btSoftBody*> m_shortened;
+};
+}  // namespace drape

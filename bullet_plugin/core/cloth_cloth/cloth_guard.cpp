@@ -1,0 +1,163 @@
+#include "cloth_guard.h"
+
+#include <algorithm>
+
+#include "bullet_plugin/core/threads/ranges.h"
+
+namespace drape
+{
+namespace
+{
+constexpr int kMostRounds = 8;
+// Minimum pairs for sharing them among threads, and the pairs of a range.
+constexpr std::size_t kLeastShared = 1024, kRange = 256;
+
+PlanePoint pointAt(const float* positions, std::size_t node)
+{
+    return {positions[3 * node], positions[3 * node + 1], positions[3 * node + 2]};
+}
+
+// Returns the distance that each side keeps, m. Features that are nearer than the thickness at rest keep less.
+double clearanceOf(const ClothSet& set, const FeatureTest& test, const FeaturePaths& paths)
+{
+    const double clearance = double(kGuardClearance) * double(set.thickness());
+    if (separationOf(paths) > 2 * clearance) return clearance;
+    return double(kGuardClearance) * double(selfThickness(set.thickness(), set.restDistance(test)));
+}
+}  // namespace
+
+template <class Work>
+void ClothGuard::forPairs(ThreadTeam& threads, const Work& work)
+{
+    const auto range = [&](std::size_t first, std::size_t last)
+    {
+        for (std::size_t i = first; i < last; ++i)
+            work(i);
+    };
+    forRanges(m_pairs.size(), kLeastShared, kRange, &threads, range);
+}
+
+// Forgets pairs that are not guarded.
+void ClothGuard::dropOthers(const ClothSet& set, const IsGuarded& isGuarded)
+{
+    if (!isGuarded) return;
+    const auto isOther = [&](const FeatureTest& test)
+    {
+        std::uint32_t nodes[4];
+        set.nodesOf(test, nodes);
+        return !isGuarded(nodes);
+    };
+    m_tests.erase(std::remove_if(m_tests.begin(), m_tests.end(), isOther), m_tests.end());
+}
+
+void ClothGuard::takePairs(const ClothSet& set, const std::vector<unsigned char>& isHeld, ThreadTeam& threads)
+{
+    m_pairs.resize(m_tests.size());
+    const auto take = [&](std::size_t i)
+    {
+        Guarded& pair = m_pairs[i];
+        pair.m_paths.m_split = set.nodesOf(m_tests[i], pair.m_nodes);
+        for (int k = 0; k < 4; ++k)
+        {
+            pair.m_paths.m_start[k] = pointAt(set.start(), pair.m_nodes[k]);
+            pair.m_paths.m_end[k] = pointAt(set.end(), pair.m_nodes[k]);
+            pair.m_paths.m_isHeld[k] = isHeld[pair.m_nodes[k]] != 0;
+        }
+        pair.m_clearance = clearanceOf(set, m_tests[i], pair.m_paths);
+        pair.m_rests = pair.m_needsPlane = false;
+    };
+    forPairs(threads, take);
+}
+
+// Gives a resting plane to pairs that no moving one keeps apart on the way to where the nodes now end, or to all pairs.
+// Returns whether any pair got one.
+bool ClothGuard::checkPairs(const ClothSet& set, bool all, ThreadTeam& threads)
+{
+    const auto check = [&](std::size_t i)
+    {
+        Guarded& pair = m_pairs[i];
+        pair.m_needsPlane = false;
+        if (pair.m_rests) return;
+        FeaturePaths now = pair.m_paths;
+        for (int k = 0; k < 4; ++k)
+            now.m_end[k] = pointAt(set.end(), pair.m_nodes[k]);
+        if (!all && stayApart(now, pair.m_clearance)) return;
+        pair.m_plane = separatingPlane(pair.m_paths, pair.m_clearance);
+        pair.m_rests = pair.m_needsPlane = true;
+    };
+    forPairs(threads, check);
+    return std::any_of(m_pairs.begin(), m_pairs.end(), [](const Guarded& pair) { return pair.m_needsPlane; });
+}
+
+// Lets every node go the least share of its path that its resting planes allow. rounded: instead stops nodes at their
+// starts that fail at their rounded ends. Returns whether a share fell.
+bool ClothGuard::shorten(const ClothSet& set, bool rounded)
+{
+    bool fell = false;
+    for (const Guarded& pair : m_pairs)
+    {
+        for (int k = 0; pair.m_rests && pair.m_plane.m_isCertified && k < 4; ++k)
+        {
+            double& share = m_shares[pair.m_nodes[k]];
+            if (pair.m_paths.m_isHeld[k] || !(share > 0)) continue;
+            const double most = rounded ? 0 : clearShare(pair.m_plane, pair.m_paths, k);
+            if (most >= share) continue;
+            if (rounded && staysClear(pair.m_plane, pair.m_paths, k, pointAt(set.end(), pair.m_nodes[k]))) continue;
+            share = most;
+            fell = true;
+        }
+    }
+    return fell;
+}
+
+// Writes the ends of nodes that go a share of their paths. Without a share that is the start, to the last bit.
+void ClothGuard::place(ClothSet& set) const
+{
+    for (std::size_t i = 0; i < 3 * m_shares.size(); ++i)
+    {
+        const double share = m_shares[i / 3], start = set.start()[i], way = double(m_ends[i]) - start;
+        if (share < 1) set.end()[i] = share > 0 ? float(start + share * way) : set.start()[i];
+    }
+}
+
+GuardResult ClothGuard::apply(ClothSet& set, const std::vector<unsigned char>& isHeld, const IsGuarded& isGuarded,
+                              std::uint64_t limit, ThreadTeam& threads)
+{
+    GuardResult result;
+    m_ends.assign(set.end(), set.end() + 3 * set.nodeCount());
+    m_shares.assign(set.nodeCount(), 1.0);
+    m_pairs.clear();
+    result.m_tooMany = !set.findPairs(2 * kGuardClearance * set.thickness(), limit, threads, m_tests);
+    if (result.m_tooMany)
+    {
+        for (std::size_t node = 0; node < set.nodeCount(); ++node)
+            if (!isHeld[node]) m_shares[node] = 0;
+        place(set);
+    }
+    else
+    {
+        dropOthers(set, isGuarded);
+        takePairs(set, isHeld, threads);
+    }
+    for (int round = 1;; ++round)
+    {
+        const bool anyNew = checkPairs(set, round == kMostRounds, threads);
+        if (!shorten(set, false) && !anyNew && !shorten(set, true)) break;
+        place(set);
+    }
+    result.m_pairs = m_pairs.size();
+    result.m_shortened =
+        std::size_t(std::count_if(m_shares.begin(), m_shares.end(), [](double share) { return share < 1; }));
+    for (const Guarded& pair : m_pairs)
+    {
+        if (!pair.m_rests) continue;
+        result.m_startMeeting += !pair.m_plane.m_isCertified;
+        bool isForced = false;
+        for (int k = 0; pair.m_plane.m_isCertified && k < 4; ++k)
+            isForced = isForced ||
+                       (pair.m_paths.m_isHeld[k] && !staysClear(pair.m_plane, pair.m_paths, k, pair.m_paths.m_end[k]));
+        result.m_forced += isForced;
+    }
+    return result;
+}
+}  // namespace drape

@@ -1,0 +1,73 @@
+// Shortens the paths of cloths' nodes so that no two features of cloth meet on their way: the guarantee for cloth
+// against itself and against other cloth, whatever a solver did.
+//
+// Input: a set whose nodes start a step where no two triangles meet, and end it where a solver put them. Output: ends
+// on the same straight paths. Guarantee: features that start apart stay apart on the whole way, for each pair alone
+// that the result does not count. Nodes that nothing threatens are not moved. The same bits with any number of
+// threads. Cost: that of finding pairs within kGuardClearance of the thickness, and some 200 ns for each.
+//
+// Method: a pair is left alone if a moving plane keeps its features apart on the way to their rounded ends. Otherwise
+// it gets a plane that rests (separating_plane.h), and a node goes the least share of its path that its resting planes
+// allow. Shorter paths change what other pairs need, so all are checked again until nothing changes. After
+// kMostRounds every pair gets a resting plane. A node that stays where it started is on its side of all of them.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "bullet_plugin/core/threads/thread_team.h"
+#include "cloth_set.h"
+#include "separating_plane.h"
+
+namespace drape
+{
+// Distance from a plane that each side keeps, as a share of the pair's thickness.
+constexpr float kGuardClearance = 1.0f / 32;
+
+struct GuardResult
+{
+    std::size_t m_pairs = 0;         // pairs that were checked
+    std::size_t m_shortened = 0;     // nodes
+    std::size_t m_startMeeting = 0;  // pairs that meet at their start, or nearly so; they are not guarded
+    std::size_t m_forced = 0;        // pairs that held nodes bring together; they may meet
+    bool m_tooMany = false;          // more pairs than the limit: all paths are shortened to nothing
+};
+
+class ClothGuard
+{
+public:
+    // Returns whether the guard keeps two features with these four nodes of the set apart.
+    using IsGuarded = std::function<bool(const std::uint32_t*)>;
+    // isHeld: by node of the set; held nodes go where they go. isGuarded: null if all are.
+    GuardResult apply(ClothSet& set, const std::vector<unsigned char>& isHeld, const IsGuarded& isGuarded,
+                      std::uint64_t limit, ThreadTeam& threads);
+    // Returns the share of its path that each node went in the last apply().
+    const std::vector<double>& shares() const { return m_shares; }
+
+private:
+    struct Guarded
+    {
+        std::uint32_t m_nodes[4];
+        FeaturePaths m_paths;
+        double m_clearance;       // m
+        SeparatingPlane m_plane;  // if m_rests
+        bool m_rests;             // the pair has a resting plane
+        bool m_needsPlane;        // after a check
+    };
+
+    template <class Work>
+    void forPairs(ThreadTeam& threads, const Work& work);
+    void dropOthers(const ClothSet& set, const IsGuarded& isGuarded);
+    void takePairs(const ClothSet& set, const std::vector<unsigned char>& isHeld, ThreadTeam& threads);
+    bool checkPairs(const ClothSet& set, bool all, ThreadTeam& threads);
+    bool shorten(const ClothSet& set, bool rounded);
+    void place(ClothSet& set) const;
+
+    std::vector<FeatureTest> m_tests;
+    std::vector<Guarded> m_pairs;
+    std::vector<double> m_shares;
+    std::vector<float> m_ends;  // ends of the whole paths
+};
+}  // namespace drape

@@ -1,0 +1,75 @@
+// Several cloths joined into one mesh, so that pairs of features within a cloth and between two are found in one way.
+//
+// Input: the members' triangles and nodes at rest, then in each step their nodes at its start and end. Output: pairs of
+// features whose paths may come near each other, and their contacts (self_step.h). Guarantee: as there. On the host.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "bullet_plugin/core/lists/contact_view.h"
+#include "bullet_plugin/core/scene/scene.h"
+#include "host_self_patches.h"
+
+namespace drape
+{
+// A cloth as the caller has it: arrays that are read during the call only. Lengths in metres.
+struct SetMember
+{
+    const std::int32_t* m_triangles;  // 3 nodes each
+    std::size_t m_triangleCount;
+    const std::int32_t* m_edges;  // 2 nodes each; those that belong to no triangle
+    std::size_t m_edgeCount;
+    const float* m_rest;  // x y z per node
+    std::size_t m_nodeCount;
+};
+
+class ClothSet
+{
+public:
+    // Replaces the members. thickness: m, the greatest of any pair.
+    void assign(const std::vector<SetMember>& members, float thickness);
+
+    std::size_t memberCount() const { return m_firstNodes.empty() ? 0 : m_firstNodes.size() - 1; }
+    std::size_t nodeCount() const { return m_firstNodes.empty() ? 0 : m_firstNodes.back(); }
+    // Returns the first of a member's nodes in the arrays below; for memberCount() their end.
+    std::size_t firstNode(std::size_t member) const { return m_firstNodes[member]; }
+    std::size_t memberOf(std::size_t node) const;
+    float thickness() const { return m_thickness; }
+    // x y z per node, m, at the step's start and end; the caller writes them.
+    float* start() { return m_scene->m_clothNodes.start(); }
+    float* end() { return m_scene->m_clothNodes.end(); }
+    const float* start() const { return m_scene->m_clothNodes.start(); }
+    const float* end() const { return m_scene->m_clothNodes.end(); }
+
+    // Returns the pairs of features that share no node and whose paths come within `reach` (m) of each other, and maybe
+    // others, in a canonical order. Valid until the next call. More than `limit` give false.
+    bool findPairs(float reach, std::uint64_t limit, ThreadTeam& threads, std::vector<FeatureTest>& pairs);
+    // Writes the four nodes of a pair, the first feature's first. Returns how many of them are the first's.
+    int nodesOf(const FeatureTest& pair, std::uint32_t nodes[4]) const;
+    // Returns a pair's distance at rest, m; that of features of two members is beyond the thickness.
+    float restDistance(const FeatureTest& pair) const;
+
+    // Lists, for all pairs of triangles that intersect where they start, the six nodes. Exact. Triangles with a common
+    // vertex need another common point; those with a common edge are left out. O(n log n).
+    void findMeeting(std::vector<std::uint32_t>& nodes) const;
+
+    // Finds the contacts along the paths that reach to `reachScale` times the thickness, in canonical order. More than
+    // `limit` pairs give false.
+    bool findContacts(float reachScale, std::uint64_t limit, ThreadTeam& threads, std::vector<Contact>& contacts);
+    // Resolves a contact; nodes are counted over all members.
+    SelfContactView view(const Contact& contact) const { return viewSelfContact(*m_scene, contact); }
+
+private:
+    SelfStep stepFor(float reach, float reachScale);
+
+    std::unique_ptr<Scene> m_scene;  // with all members as its only mesh
+    std::unique_ptr<HostSelfPatches> m_patches;
+    SelfReach m_reach;
+    std::vector<float> m_noObstacles;  // see SelfStep
+    std::vector<std::size_t> m_firstNodes;
+    float m_thickness = 0;
+};
+}  // namespace drape

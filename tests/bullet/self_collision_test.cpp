@@ -1,0 +1,206 @@
+// Cloth that collides with itself and with other cloth (Plugin::setSelfCollision()), by the exact check.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "oracle/self_intersections.h"
+#include "scenes/shapes.h"
+#include "tests/bullet/drop_world.h"
+
+namespace drape::test
+{
+namespace
+{
+// Sheets above one another in a world of their own.
+struct Layers
+{
+    Layers(const Settings& settings, int count, float distance, bool collide = true, int mask = -1)
+        : m_plugin(settings), m_world(&m_plugin)
+    {
+        for (int k = 0; k < count; ++k)
+        {
+            ClothSpec spec;
+            spec.m_nodes = 13;
+            spec.m_centre = btVector3(0.01f * btScalar(k), 0.6f + distance * btScalar(k), 0.013f * btScalar(k));
+            spec.m_damping = 0;
+            m_cloths.push_back(&m_world.addCloth(spec, 1, mask));
+            if (collide) m_plugin.setSelfCollision(*m_cloths.back(), true);
+        }
+    }
+
+    std::vector<float> positions() const
+    {
+        std::vector<float> all;
+        for (const btSoftBody* cloth : m_cloths)
+        {
+            const std::vector<float> own = positionsOf(*cloth);
+            all.insert(all.end(), own.begin(), own.end());
+        }
+        return all;
+    }
+    TriangleMesh joined() const
+    {
+        TriangleMesh mesh;
+        mesh.m_positions = positions();
+        std::int32_t first = 0;
+        for (const btSoftBody* cloth : m_cloths)
+        {
+            for (const std::int32_t node : meshOf(*cloth).m_triangles)
+                mesh.m_triangles.push_back(first + node);
+            first += cloth->m_nodes.size();
+        }
+        return mesh;
+    }
+    // Runs steps. Returns the most pairs of triangles that intersect after any of them.
+    std::size_t run(int steps)
+    {
+        SelfIntersections check(joined());
+        std::size_t most = 0;
+        for (int i = 0; i < steps; ++i)
+        {
+            m_world.step();
+            m_status |= m_plugin.statistics().m_status;
+            most = std::max(most, check.find(positions()).size());
+        }
+        return most;
+    }
+    btVector3 momentum() const
+    {
+        btVector3 sum(0, 0, 0);
+        for (const btSoftBody* cloth : m_cloths)
+            for (int i = 0; i < cloth->m_nodes.size(); ++i)
+                sum += cloth->m_nodes[i].m_v / cloth->m_nodes[i].m_im;
+        return sum;
+    }
+    void turnGravityOff()
+    {
+        m_world.world().setGravity(btVector3(0, 0, 0));
+        m_world.world().getWorldInfo().m_gravity.setZero();
+    }
+
+    Plugin m_plugin;
+    DropWorld m_world;
+    std::vector<btSoftBody*> m_cloths;
+    std::uint32_t m_status = 0;
+};
+
+Settings withThreads(unsigned threads)
+{
+    Settings settings = hostSettings();
+    settings.m_threads = threads;
+    return settings;
+}
+}  // namespace
+
+TEST(SelfCollision, LayersOnASphereNeverMeetWithAnyNumberOfThreads)
+{
+    std::vector<std::vector<float>> ends;
+    for (const unsigned threads : {1u, 2u, 7u})
+    {
+        MeshShape sphere(makeSphere(0.5f, 3));
+        Layers layers(withThreads(threads), 3, 0.03f);
+        layers.m_world.addObstacle(sphere.shape());
+        EXPECT_EQ(layers.run(threads == 1 ? 150 : 60), 0u);
+        EXPECT_EQ(layers.m_status, std::uint32_t(kStepGood)) << statusText(layers.m_status);
+        EXPECT_GT(layers.m_plugin.statistics().m_selfContacts, 0u);
+        if (threads == 1) continue;
+        ends.push_back(layers.positions());
+        EXPECT_EQ(ends.front(), ends.back());
+    }
+}
+
+TEST(SelfCollision, LayersMeetWithoutIt)
+{
+    MeshShape sphere(makeSphere(0.5f, 3));
+    Layers layers(hostSettings(), 3, 0.03f, false);
+    layers.m_world.addObstacle(sphere.shape());
+    EXPECT_GT(layers.run(60), 0u);
+}
+
+TEST(SelfCollision, TheHighestLayerRestsAThicknessAboveEachLowerOne)
+{
+    MeshShape box(makeBox(4, 1, 4));
+    Layers layers(hostSettings(), 3, 0.03f);
+    layers.m_world.addObstacle(box.shape());
+    EXPECT_EQ(layers.run(200), 0u);
+    const double top = 0.5 + kThickness;
+    for (int k = 0; k < 3; ++k)
+        EXPECT_NEAR(double(lowestOf(*layers.m_cloths[std::size_t(k)])), top + k * double(kThickness), 0.002) << k;
+    for (const btSoftBody* cloth : layers.m_cloths)
+        EXPECT_LT(rmsSpeed(*cloth), 0.01);
+}
+
+TEST(SelfCollision, SheetsSideBySideFallFreely)
+{
+    Layers layers(hostSettings(), 2, 0.001f, false);
+    for (const btSoftBody* cloth : layers.m_cloths)
+        layers.m_plugin.setSelfCollision(*cloth, true, 0.0005);
+    const std::vector<float> before = layers.positions();
+    EXPECT_EQ(layers.run(30), 0u);
+    double fallen = 0, expected = 0;
+    for (std::size_t i = 1; i < before.size(); i += 3)
+        fallen += double(before[i] - layers.positions()[i]) / double(before.size() / 3);
+    for (int i = 1; i <= 30; ++i)
+        expected += 9.81 * i / 3600.0;  // Bullet integrates so
+    EXPECT_NEAR(fallen, expected, 0.03 * expected);
+    Layers alone(hostSettings(), 2, 0.001f, false);
+    alone.run(30);
+    for (std::size_t i = 0; i < before.size(); ++i)
+        EXPECT_NEAR(layers.positions()[i], alone.positions()[i], 1e-6f);
+}
+
+TEST(SelfCollision, SheetsThatMeetKeepTheirMomentum)
+{
+    Layers layers(hostSettings(), 2, 0.1f);
+    layers.turnGravityOff();
+    layers.m_cloths[0]->setVelocity(btVector3(0.2f, 3, 0));
+    layers.m_cloths[1]->setVelocity(btVector3(0, -2, 0.1f));
+    const btVector3 before = layers.momentum();
+    EXPECT_EQ(layers.run(60), 0u);
+    EXPECT_LT((layers.momentum() - before).length(), 1e-4f * before.length());
+    EXPECT_LT(layers.m_cloths[0]->m_nodes[84].m_v.y(), 1.5f);  // it was stopped
+}
+
+TEST(SelfCollision, BulletsFiltersKeepBodiesFromMeeting)
+{
+    MeshShape box(makeBox(4, 1, 4));
+    Layers layers(hostSettings(), 2, 0.03f, true, btBroadphaseProxy::StaticFilter);
+    layers.m_world.addObstacle(box.shape());
+    layers.run(60);
+    EXPECT_NEAR(lowestOf(*layers.m_cloths[0]), lowestOf(*layers.m_cloths[1]), 0.001f);
+    EXPECT_EQ(layers.m_status, std::uint32_t(kStepGood)) << statusText(layers.m_status);
+}
+
+TEST(SelfCollision, ClothThatStartsThroughOtherClothIsReported)
+{
+    Layers layers(hostSettings(), 2, 0);
+    layers.turnGravityOff();
+    btSoftBody& second = *layers.m_cloths[1];
+    for (int i = 0; i < second.m_nodes.size(); ++i)
+    {
+        btSoftBody::Node& node = second.m_nodes[i];
+        node.m_x.setY(node.m_x.y() + btScalar(0.4) * node.m_x.x());
+        node.m_q = node.m_x;
+    }
+    layers.m_world.step();
+    EXPECT_NE(layers.m_plugin.statistics().m_status & kStepClothsMeet, 0u);
+    EXPECT_GT(layers.m_plugin.statistics().m_clothPairsMeeting, 0u);
+    for (int i = 0; i < 60; ++i)
+    {
+        layers.m_world.step();
+        EXPECT_LT(rmsSpeed(second), 3.0) << i;
+    }
+}
+
+TEST(SelfCollision, SwitchedOffItCostsNothing)
+{
+    Layers layers(hostSettings(), 2, 0.01f);
+    layers.m_world.step();
+    EXPECT_GT(layers.m_plugin.statistics().m_selfContacts, 0u);
+    for (const btSoftBody* cloth : layers.m_cloths)
+        layers.m_plugin.setSelfCollision(*cloth, false);
+    layers.m_world.step();
+    EXPECT_EQ(layers.m_plugin.statistics().m_selfContacts, 0u);
+}
+}  // namespace drape::test
