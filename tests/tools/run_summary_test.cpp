@@ -66,6 +66,20 @@ TEST(RunSummary, StretchIsAgainstTheLengthsAtTheStart)
     EXPECT_NEAR(narrow.m_mean, (-0.5 + std::sqrt(4.25 / 5) - 1) / 3, 1e-7);
 }
 
+TEST(RunSummary, TheTableHasTheStretchAtTheEnd)
+{
+    NamedRun run = runOf("drape", {0, 0}, 1);
+    run.m_record.m_steps.back().m_stretch = {0.0125, 0.5};
+    const std::string table = asTable({run});
+    const auto rowOf = [&](const std::string& label)
+    {
+        const std::size_t at = std::min(table.find(label), table.size());
+        return table.substr(at, table.find('\n', at) - at);
+    };
+    EXPECT_NE(rowOf("stretch, mean, end, %").find(" 1.25"), std::string::npos) << table;
+    EXPECT_NE(rowOf("stretch, maximum, end, %").find(" 50.00"), std::string::npos) << table;
+}
+
 TEST(RunSummary, SpeedAtRestIsThatOfTheLastQuarter)
 {
     NamedRun run = runOf("drape", {0, 0, 0, 0, 0, 0, 0, 0}, 1);

@@ -179,6 +179,45 @@ void addStepTimes(std::string& table, const std::vector<NamedRun>& runs, const s
     }
 }
 
+bool anyContact(const std::vector<RunSummary>& summaries)
+{
+    return std::any_of(summaries.begin(), summaries.end(),
+                       [](const RunSummary& summary) { return summary.m_stepsInContact > 0; });
+}
+
+// Adds what was measured on the cloth.
+void addMeasures(std::string& table, const std::vector<RunSummary>& summaries)
+{
+    const auto add = [&](const char* label, const std::function<std::string(const RunSummary&)>& cell)
+    {
+        std::vector<std::string> cells;
+        for (const RunSummary& summary : summaries)
+            cells.push_back(cell(summary));
+        table += row(label, cells);
+    };
+    using Run = const RunSummary&;
+    add("contacts, maximum", [](Run run) { return count(run.m_contactsMax); });
+    add("penetration, maximum, mm", [](Run run) { return text("%.3f", 1000 * run.m_penetrationMax); });
+    if (anyContact(summaries))
+        add("penetration, p99, mm", [](Run run) { return textOfContacts(run, 1000 * run.m_penetrationP99); });
+    add("gap, minimum, mm", [](Run run) { return text("%.3f", 1000 * run.m_gapMin); });
+    add("nodes below surface, end", [](Run run) { return count(run.m_nodesBelow); });
+    add("nodes that went through", [](Run run) { return count(run.m_nodesThrough); });
+    add("intersecting pairs, end", [](Run run) { return count(run.m_intersectingPairsEnd); });
+    add("intersecting pairs, maximum (step)",
+        [](Run run)
+        {
+            return count(run.m_intersectingPairsMax) +
+                   (run.m_intersectingPairsMax > 0 ? " (" + count(run.m_intersectingPairsMaxStep) + ")" : "");
+        });
+    add("stretch, mean, end, %", [](Run run) { return text("%.2f", 100 * run.m_stretch.m_mean); });
+    add("stretch, maximum, end, %", [](Run run) { return text("%.2f", 100 * run.m_stretch.m_max); });
+    add("cloth pairs intersecting, end (maximum)", [](const RunSummary& summary)
+        { return count(summary.m_selfPairsEnd) + " (" + count(summary.m_selfPairsMax) + ")"; });
+    add("NaN nodes", [](Run run) { return count(run.m_invalidNodes); });
+    add("hash", [](Run run) { return hashText(run.m_hash); });
+}
+
 std::string heading(const std::vector<NamedRun>& runs)
 {
     const RunRecord& first = runs.front().m_record;
@@ -259,35 +298,14 @@ std::string asTable(const std::vector<NamedRun>& runs)
     };
     add("steps (in contact)", [&](std::size_t i)
         { return count(runs[i].m_record.m_steps.size()) + " (" + count(summaries[i].m_stepsInContact) + ")"; });
-    const bool anyContact = std::any_of(summaries.begin(), summaries.end(),
-                                        [](const RunSummary& summary) { return summary.m_stepsInContact > 0; });
-    if (anyContact)
+    if (anyContact(summaries))
     {
         addStepTimes(table, runs, summaries);
         addTimes(table, "collision, ms", summaries, &RunSummary::m_collision);
         add("finding contacts, ms, median",
             [&](std::size_t i) { return textOfContacts(summaries[i], summaries[i].m_finding.m_median); });
     }
-    add("contacts, maximum", [&](std::size_t i) { return count(summaries[i].m_contactsMax); });
-    add("penetration, maximum, mm", [&](std::size_t i) { return text("%.3f", 1000 * summaries[i].m_penetrationMax); });
-    if (anyContact)
-        add("penetration, p99, mm",
-            [&](std::size_t i) { return textOfContacts(summaries[i], 1000 * summaries[i].m_penetrationP99); });
-    add("gap, minimum, mm", [&](std::size_t i) { return text("%.3f", 1000 * summaries[i].m_gapMin); });
-    add("nodes below surface, end", [&](std::size_t i) { return count(summaries[i].m_nodesBelow); });
-    add("nodes that went through", [&](std::size_t i) { return count(summaries[i].m_nodesThrough); });
-    add("intersecting pairs, end", [&](std::size_t i) { return count(summaries[i].m_intersectingPairsEnd); });
-    add("intersecting pairs, maximum (step)",
-        [&](std::size_t i)
-        {
-            const RunSummary& summary = summaries[i];
-            return count(summary.m_intersectingPairsMax) +
-                   (summary.m_intersectingPairsMax > 0 ? " (" + count(summary.m_intersectingPairsMaxStep) + ")" : "");
-        });
-    add("cloth pairs intersecting, end (maximum)", [&](std::size_t i)
-        { return count(summaries[i].m_selfPairsEnd) + " (" + count(summaries[i].m_selfPairsMax) + ")"; });
-    add("NaN nodes", [&](std::size_t i) { return count(summaries[i].m_invalidNodes); });
-    add("hash", [&](std::size_t i) { return hashText(summaries[i].m_hash); });
+    addMeasures(table, summaries);
     if (runs.size() == 1) return table;
     const auto addRatio = [&](const char* label, const TimeSummary RunSummary::*times)
     {
