@@ -106,11 +106,10 @@ SolveStage* KeptBodies::stage() const
 
 const char* KeptBodies::keep(btSoftBody& body)
 {
+    if (const char* reason = reasonForBulletsLinks(m_state, body)) return reason;
+    if (const char* reason = reasonForBulletsPrediction(body)) return reason;
     SolveStage* const solver = stage();
     if (!solver) return "no OpenCL device solves cloth (Settings::m_solverPlace)";
-    if (const char* reason = reasonForBulletsLinks(m_state, body)) return reason;
-    if (!isPlain(body))
-        return "the soft body has wind, pressure, volume, a pose or a face tree, or is to collide with soft bodies";
     if (body.m_anchors.size() > 0) return "the soft body has anchors";
     const Kept* const known = find(body);
     if (!known || known->m_revision != solver->revision()) makeRoom(body, m_bodies[&body]);

@@ -72,14 +72,25 @@ void setBounds(btSoftBody& body, const Bounds& bounds)
 }
 }  // namespace
 
-bool isPlain(const btSoftBody& body)
+const char* reasonForBulletsPrediction(const btSoftBody& body)
 {
     const btSoftBody::Config& config = body.m_cfg;
-    const bool isPushed = config.kLF > 0 || config.kDG > 0 || config.kPR != 0 || config.kVC > 0;
+    if (config.kLF > 0 || config.kDG > 0) return "the soft body is in wind (kLF, kDG)";
+    if (config.kPR != 0) return "the soft body has pressure (kPR)";
+    if (config.kVC > 0) return "the soft body conserves its volume (kVC)";
     // Bullet finds contacts of two such bodies as far as the volumes of their leaves reach.
-    const bool readsLeaves = config.collisions & (btSoftBody::fCollision::VF_SS | btSoftBody::fCollision::VF_DD);
-    return !isPushed && !readsLeaves && !body.m_pose.m_bframe && body.m_clusters.size() == 0 && body.m_fdbvt.empty() &&
-           !body.m_reducedModel && body.m_worldInfo;
+    if (config.collisions & (btSoftBody::fCollision::VF_SS | btSoftBody::fCollision::VF_DD))
+        return "the soft body collides with soft bodies (VF_SS or VF_DD)";
+    if (body.m_pose.m_bframe) return "the soft body has a pose (setPose)";
+    if (body.m_clusters.size() > 0) return "the soft body has clusters";
+    if (!body.m_fdbvt.empty()) return "the soft body has a tree of faces, as rays make it";
+    if (body.m_reducedModel) return "the soft body is a reduced deformable model";
+    return body.m_worldInfo ? nullptr : "the soft body belongs to no world (m_worldInfo)";
+}
+
+bool isPlain(const btSoftBody& body)
+{
+    return !reasonForBulletsPrediction(body);
 }
 
 bool isPlain(const btSoftBody& body, btScalar dt)

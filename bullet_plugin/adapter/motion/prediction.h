@@ -13,8 +13,9 @@
 
 namespace drape
 {
-// Returns whether the body has no wind, pressure, volume, pose, cluster or face tree that would have to be updated, and
-// is not to collide with soft bodies.
+// Returns why Bullet predicts the body in every step: wind, pressure, volume, a pose, clusters or a face tree would
+// have to be updated, or the body collides with soft bodies. Null if there is no reason: the body is plain.
+const char* reasonForBulletsPrediction(const btSoftBody& body);
 bool isPlain(const btSoftBody& body);
 // Returns whether predictPlain() replaces Bullet's function in the coming step of dt seconds: time passes, too, and no
 // link has changed.
