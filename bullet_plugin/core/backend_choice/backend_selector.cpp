@@ -39,6 +39,17 @@ DeviceInfo hostInfo()
     info.m_name = "host";
     return info;
 }
+
+// Returns the numbers that decide between the host and the device.
+std::string reasonByCost(const DeviceReport& report, const std::string& device)
+{
+    const std::string text = rounded(report.m_expectedPairs) + " expected triangle pairs; ";
+    const std::string source = " (" + report.m_crossoverSource + ")";
+    if (report.m_crossover == 0) return text + device + " for any number" + source;
+    if (!std::isinf(report.m_crossover)) return text + device + " above " + rounded(report.m_crossover) + source;
+    const bool isMeasured = report.m_crossoverSource.rfind("measured", 0) == 0;
+    return text + "the host " + (isMeasured ? "is faster than " + device + " " : "") + "for any number" + source;
+}
 }  // namespace
 
 BackendSelector::BackendSelector(const Settings& settings, std::shared_ptr<ThreadTeam> threads)
@@ -220,16 +231,7 @@ void BackendSelector::selectByWork()
     m_report.m_onHost = m_choice.chooseHost();
     m_report.m_expectedPairs = m_choice.work();
     m_report.m_device = m_report.m_onHost ? hostInfo() : m_wanted.m_device;
-    const std::string& name = m_wanted.m_device.m_name;
-    const std::string source = " (" + m_report.m_crossoverSource + ")";
-    const std::string work = "expected pairs of triangles: " + rounded(m_report.m_expectedPairs) + ", ";
-    if (std::isinf(m_report.m_crossover))
-        m_report.m_reason = work + "the host for any number, rather than " + name + source;
-    else if (m_report.m_crossover == 0)
-        m_report.m_reason = work + name + ", " + m_wanted.m_reason + ", for any number" + source;
-    else
-        m_report.m_reason = work + "the host up to " + rounded(m_report.m_crossover) + ", else " + name + ", " +
-                            m_wanted.m_reason + source;
+    m_report.m_reason = reasonByCost(m_report, m_wanted.m_device.m_name);
 }
 
 void BackendSelector::choose(const Scene& scene, const StepInput& input)

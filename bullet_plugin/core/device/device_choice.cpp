@@ -109,7 +109,7 @@ DeviceChoice chooseDevice(const Settings& settings, Error& error)
     choice.m_onHost = false;
     choice.m_device = devices[0];
     choice.m_byCost = settings.m_backend == Backend::Auto;
-    choice.m_reason = devices[0].m_isGpu ? "the first GPU" : "no GPU was found; the first OpenCL device";
+    choice.m_reason = devices[0].m_isGpu ? "the first GPU" : "the first OpenCL device, no GPU found";
     return choice;
 }
 
