@@ -74,7 +74,9 @@ public:
 
     // Returns the device and the reason for it. Valid as long as the plugin.
     const DeviceReport& device() const;
-    // Returns the statistics of the last step of this plugin's solvers. Valid as long as the plugin.
+    // Returns the statistics of the last internal step of any world of the plugin. Valid as long as the plugin. One
+    // call of stepSimulation() may run several such steps, or none. A pre-tick callback sees the step before it; a
+    // post-tick callback comes before Bullet solves soft bodies.
     const StepStatistics& statistics() const;
     // Returns the contacts of that step in canonical order; the call makes the list. Empty if memory runs out.
     std::vector<ContactInfo> contacts() const;
@@ -112,9 +114,9 @@ public:
     void release(const btCollisionWorld& world);
 
     // Leaves a soft body's nodes on the device from the end of its next step on, so that a step copies none of them.
-    // Bullet's nodes then stay as they are until fetch(). What an app sets in them meanwhile does not count, except
-    // positions of pinned nodes, and masses from the next step on the host. To change the nodes, call fetch(), set
-    // them, and call takeNodes().
+    // Bullet's nodes then stay as they are until fetch(). Changes that an app makes to them meanwhile are ignored, and
+    // so are forces (addForce(), addVelocity()). Positions of pinned nodes count, and masses from the next step on the
+    // host. To change the nodes, call fetch(), set them, and call takeNodes().
     //
     // A step that needs the nodes on the host brings them there by itself, and computes the same. It does so beside
     // objects whose contacts Bullet's own algorithm finds, at impacts, in free fall, and with moved pins or another
@@ -123,7 +125,8 @@ public:
     // Returns an empty string, or why the body cannot be kept; "out of memory" if memory runs out. The body must stay
     // alive and in its world until `keep` is false, which fetches its nodes. If the device fails, the nodes of the last
     // fetch() remain. If memory runs out in a step, all bodies get their nodes and are kept no more. Once the plugin is
-    // destroyed, bodies get theirs in the next step.
+    // destroyed, bodies get theirs in the next step. No call tells whether a body is still kept: call keepOnDevice()
+    // again after kStepOutOfMemory. A failed device keeps none; a new plugin may.
     std::string keepOnDevice(btSoftBody& body, bool keep);
     // Takes a kept body's nodes as Bullet has them: those of the last fetch(), with what the app has changed since.
     void takeNodes(const btSoftBody& body);
@@ -131,9 +134,10 @@ public:
     // and waits only if no step followed.
     void beginFetch(const btSoftBody& body);
     // Gives Bullet's nodes of a kept body their positions, velocities and normals. Returns false, with nothing changed,
-    // if they were Bullet's already.
+    // if Bullet's nodes are current, or if the device failed and lost them; error() is set then.
     bool fetch(btSoftBody& body);
-    // Gives the same to arrays of the caller's. Returns false, with nothing written, if Bullet has the nodes.
+    // Gives the same to arrays of the caller's. Returns false, with nothing written, in these cases, and if the number
+    // of the body's nodes has changed.
     bool fetch(const btSoftBody& body, const NodeArrays& arrays);
 
     // Announces that vertices of a mesh shape moved in place, and wakes soft bodies that sleep beside it. Drape notices

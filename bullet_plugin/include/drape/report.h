@@ -170,7 +170,7 @@ struct StepParts
     double callsMs() const { return collisionMs() + m_predictMs + m_bulletMs + m_normalsMs; }
 };
 
-// The work and cost of one step.
+// The work and cost of one internal step of a world.
 struct StepStatistics : StepCounts, StepParts
 {
     // StepStatusBits.

@@ -37,7 +37,7 @@ enum class ContactMode : std::uint32_t
 // Selects who moves cloth under its links and forces.
 enum class Solver
 {
-    Auto,   // means Drape
+    Auto,   // the same as Drape today; may change its choice
     Drape,  // Drape for each soft body that it can solve (Plugin::whyBulletSolves()), Bullet for the others
     Bullet  // Bullet, with Drape's contacts between its iterations
 };
@@ -45,7 +45,7 @@ enum class Solver
 // Selects where Drape's own solver computes.
 enum class SolverPlace
 {
-    Auto,   // a GPU, if the plugin has one and the cloths are large enough for it; else the host
+    Auto,   // a GPU, once the bodies have 8,192 nodes for each thread of the host; kept bodies always; else the host
     Host,   // the host
     Device  // the plugin's OpenCL device, if it has one
 };

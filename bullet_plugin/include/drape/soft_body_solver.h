@@ -1,11 +1,11 @@
-// Bullet's default soft body solver with Drape's collision step before it and contact sweeps between its iterations.
+// Bullet's soft body solver with Drape's collision step and Drape's links.
 //
 // Pass it to btSoftRigidDynamicsWorld's constructor. solveConstraints() finds the contacts of the pairs noted during
-// dispatch and waits for the device once, or again if fast paths are cut short. Bullet then iterates, with contact
-// sweeps before each iteration and closing sweeps after the last. Without Solver::Bullet, substeps of Drape's take the
-// place of Bullet's iterations. A body with contacts gets at least two iterations, unless its piterations is 0. Bodies
-// without a time step stay unchanged, and bodies of another solver are left to Bullet. A kinematic mesh that comes near
-// a sleeping body wakes it.
+// dispatch, waits for the device once (again if fast paths are cut short), then solves links and contacts in substeps.
+// With Solver::Bullet, or for a body that Plugin::whyBulletSolves() names, Bullet iterates instead, with contact sweeps
+// before each iteration and closing sweeps after the last. A body with contacts gets at least two iterations, unless
+// its piterations is 0. Bodies without a time step stay unchanged, and bodies of another solver are left to Bullet. A
+// kinematic mesh that comes near a sleeping body wakes it.
 //
 // Guarantee: no exception leaves this class. If memory runs out in a step, cloth that Drape handles stands still and
 // the status reports kStepOutOfMemory. Cost: see StepStatistics. C++11.
