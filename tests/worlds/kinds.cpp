@@ -47,8 +47,7 @@ constexpr RandomKind kRandomKinds[] = {{"terrain", buildTerrain},
                                        {"chimney", buildChimney},
                                        {"ropes", buildRopes}};
 constexpr int kRandomKindCount = static_cast<int>(sizeof kRandomKinds / sizeof *kRandomKinds);
-// The kinds of the group "all": ropes came later, and are a group of their own, so that its lists stay as they were
-// counted.
+// The kinds of the group "all". Ropes are a group of their own, so that a seed keeps its world.
 constexpr int kAllCount = kRandomKindCount - 1;
 constexpr int kTinyStatic = kRandomKindCount;
 constexpr int kTinyKinematic = kTinyStatic + 1;

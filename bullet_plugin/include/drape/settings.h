@@ -37,7 +37,7 @@ enum class ContactMode : std::uint32_t
 // Selects who moves cloth under its links and forces.
 enum class Solver
 {
-    Auto,   // the same as Drape today; may change its choice
+    Auto,   // means Drape today; later versions may choose otherwise
     Drape,  // Drape for each soft body that it can solve (Plugin::whyBulletSolves()), Bullet for the others
     Bullet  // Bullet, with Drape's contacts between its iterations
 };
