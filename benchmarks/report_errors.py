@@ -1,7 +1,7 @@
 """Tables of error_vs_time: what a frame costs against how wrong the cloth is."""
 from results import count, figure, in_order, select, table
 
-NAMES = {"drape": "Drape, device", "drape_host": "Drape, host", "bullet": "Bullet built in",
+NAMES = {"drape": "Drape, device", "drape_host": "Drape, host", "bullet": "Bullet's own",
          "plain": "closest points in floats or doubles"}
 # Column, heading, form.
 ERRORS = (("penetration_mm", "deepest penetration, mm", figure),
@@ -81,7 +81,7 @@ def front_table(rows):
         lines.append([scene, *cells])
     return ("Pareto fronts: settings that no other setting of the same solver beats in time without being more wrong. "
             "Median ms of a frame; brackets as above.\n\n"
-            + table(["scene", "Drape, device or host", "Bullet built in"], lines))
+            + table(["scene", "Drape, device or host", "Bullet's own"], lines))
 
 
 def fall_table(rows):

@@ -44,7 +44,7 @@ def draw_steps(path, rows, sweeps, methods):
     finish(drawn, all_axes, path, 3)
 
 
-COLOURS = {"drape": ("C0", "Drape, device"), "drape_host": ("C2", "Drape, host"), "bullet": ("C3", "Bullet built in")}
+COLOURS = {"drape": ("C0", "Drape, device"), "drape_host": ("C2", "Drape, host"), "bullet": ("C3", "Bullet's own")}
 
 
 def draw_errors(path, rows):

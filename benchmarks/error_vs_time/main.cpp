@@ -1,7 +1,7 @@
 // error_vs_time: measures the cost of a frame against the error of the cloth, and the cost of a query against the error
 // of its answer.
 //
-// Measures each scene with Drape's settings and with Bullet's built-in collision at equal simulated time. Each trial
+// Measures each scene with Drape's settings and with Bullet's own collision at equal simulated time. Each trial
 // runs the whole scene in Bullet. Times are of stepSimulation, a frame of 1/60 s at a time, without the checks. Errors
 // of cloth come from the independent check (oracle/measure.h), errors of queries from exact answers. Drape on a device
 // must give the host's trajectory and answers, bit for bit. A row whose hash differs is void, and the program ends with

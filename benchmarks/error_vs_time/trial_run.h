@@ -1,6 +1,6 @@
 // Runs a trial in a child process and turns what it streamed into a row.
 //
-// Every trial has a process of its own: Bullet's built-in collision can stall for minutes and take minutes to be
+// Every trial has a process of its own: Bullet's own collision can stall for minutes and take minutes to be
 // destroyed.
 #pragma once
 

@@ -57,7 +57,7 @@ class ErrorVsTimeTest(unittest.TestCase):
             self.assertEqual(row["energy_gain"] != "", row["scene"] == "stairs")
             if row["energy_gain"]:
                 self.assertLessEqual(float(row["energy_gain"]), float(row["energy_rise"]))
-        # At 30 m/s neither the built-in collision nor the discrete mode sees the plate.
+        # At 30 m/s neither Bullet's own collision nor the discrete mode sees the plate.
         for wanted in ({"method": "bullet"}, {"setting": "discrete"}):
             through = [row for row in rows if row["scene"] == "plate" and wanted.items() <= row.items()]
             self.assertGreater(float(through[0]["nodes_through"]), 50)

@@ -62,7 +62,7 @@ class Scripts(ProgramTest):
             self.assertEqual((row["steps"], row["cloth_triangles"], row["nodes_through"]), (20, 128, 0))
             self.assertGreater(row["collision_ms"]["median"], 0)
         text = self.tables()
-        for words in ("| Drape, host, --cloth 9x9 | host |", "| Bullet built in, tuned, --cloth 9x9 | host |",
+        for words in ("| Drape, host, --cloth 9x9 | host |", "| Bullet's own, tuned, --cloth 9x9 | host |",
                       f"`{drape[0]['hash']}`"):
             self.assertIn(words, text)
 

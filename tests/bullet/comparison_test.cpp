@@ -1,4 +1,4 @@
-// Compares drops with Drape on every back end with drops with Bullet's built-in collision.
+// Compares drops with Drape on every back end with drops with Bullet's own collision.
 #include <gtest/gtest.h>
 
 #include <string>

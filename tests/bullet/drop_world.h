@@ -1,6 +1,6 @@
 // A small Bullet world for the tests: cloths, obstacles and what there is to know of them after a step.
 //
-// Input: a plugin, or none for Bullet's built-in collision. Owns everything that it makes and takes it down in the
+// Input: a plugin, or none for Bullet's own collision. Owns everything that it makes and takes it down in the
 // order that Bullet demands. Metres, seconds, kilograms; y is up; steps are 1/60 s.
 #pragma once
 

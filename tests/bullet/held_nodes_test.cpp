@@ -1,4 +1,4 @@
-// Nodes that contacts may not move, by anchors or without mass, near a surface. Contacts of faces and edges between
+// Nodes that contacts may not move, pinned or anchored, near a surface. Contacts of faces and edges between
 // them and their neighbours have little freedom to push.
 #include <gtest/gtest.h>
 
@@ -82,7 +82,7 @@ TEST_P(HeldNodes, AnAnchoredNodeStaysWithItsBox)
     world.world().removeRigidBody(&box);
 }
 
-// The app moves a node without mass along, a little above the waves' tops.
+// The app moves a pinned node along, a little above the waves' tops.
 TEST_P(HeldNodes, ANodeIsDraggedOverWaves)
 {
     MeshShape waves(makeWaves(0.1));

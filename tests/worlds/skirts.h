@@ -1,4 +1,4 @@
-// Grids of worlds with a skirt: cloth held at the waist by nodes without mass, on a kinematic body that moves the waist
+// Grids of worlds with a skirt: cloth held at the waist by pinned nodes, on a kinematic body that moves the waist
 // along. The setting's number takes the place of a seed.
 #pragma once
 

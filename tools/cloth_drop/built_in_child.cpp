@@ -58,7 +58,7 @@ void describe(RunRecord& record, BulletMode mode, const DropScene& scene)
     record.m_backend = std::string("bullet (") + modeName(mode) + ")";
     record.m_device = "host";
     record.m_solver = "bullet";
-    record.m_deviceReason = "Bullet's built-in collision runs on the host";
+    record.m_deviceReason = "Bullet's own collision runs on the host";
     record.m_clothTriangles = scene.m_sheets.triangleCount();
     record.m_clothNodes = scene.m_sheets.vertexCount();
     record.m_obstacleTriangles = scene.m_obstacle.triangleCount();

@@ -1,4 +1,4 @@
-// Runs Bullet's built-in collision in a child process, since it can stall for minutes in one step, and collects what it
+// Runs Bullet's own collision in a child process, since it can stall for minutes in one step, and collects what it
 // measured until it ended, or the cap or a signal (interruption.h) ended it.
 //
 // The child is this program with --backend bullet and a hidden option; it writes a line before and after every step to

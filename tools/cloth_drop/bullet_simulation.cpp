@@ -52,7 +52,7 @@ public:
                                              : "bullet (vfss)";
     }
     std::string device() const override { return "host"; }
-    std::string deviceReason() const override { return "Bullet's built-in collision runs on the host"; }
+    std::string deviceReason() const override { return "Bullet's own collision runs on the host"; }
     double prepareMs() const override { return 0; }
     std::string trouble() const override { return ""; }
 

@@ -1,6 +1,6 @@
 // Runs this program again as a child process whose steps may take only so long together, and follows what it writes.
 //
-// Why: Bullet's built-in collision can stall for minutes in one step. The child says when its steps begin and end
+// Why: Bullet's own collision can stall for minutes in one step. The child says when its steps begin and end
 // (capped_lines.h, step_stream.h); the cap counts the time between, or all since the first step began, but no loading.
 // All other lines go to the caller. The child is always gone when the function returns.
 #pragma once

@@ -40,7 +40,7 @@ public:
     // Adds the obstacle as a kinematic body at the origin. Call setWorldTransform() before a step to set its pose at
     // the end of the step.
     btRigidBody& addMovingObstacle(const DropScene& scene);
-    void addSoftObstacle(const DropScene& scene);  // a soft body of massless nodes, for VF_SS
+    void addSoftObstacle(const DropScene& scene);  // a soft body of pinned nodes, for VF_SS
     // Adds the scene's lowest sheet. May be called several times.
     void addCloth(const DropScene& scene, bool softPairs) { addSheet(scene, scene.m_cloth.m_mesh, softPairs); }
     // Adds all sheets of the scene, which may meet each other if it says so.

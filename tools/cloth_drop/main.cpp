@@ -1,4 +1,4 @@
-// cloth_drop: drops a cloth on an obstacle in Bullet, with Drape or Bullet's built-in collision, and reports.
+// cloth_drop: drops a cloth on an obstacle in Bullet, with Drape or Bullet's own collision, and reports.
 #include <chrono>
 #include <iostream>
 
@@ -28,7 +28,7 @@ void beginRun(const Options& options)
     listenToSignals();
 }
 
-// Runs the built-in collision with a time limit in a child, which can be ended within a step that does not end.
+// Runs Bullet's own collision with a time limit in a child, which can be ended within a step that does not end.
 bool runLimitedBuiltIn(const Options& options, const DropScene& scene, NamedRun& run, std::string& error)
 {
     beginRun(options);

@@ -109,11 +109,10 @@ void addSceneOptions(CLI::App& app, Options& options, std::string& cloth)
 
 void addBackendOptions(CLI::App& app, Options& options, std::string& mode)
 {
-    acceptOnly(
-        app.add_option(
-            "--backend", options.m_backend,
-            "auto: a GPU, else any OpenCL device, but the host if it is faster; bullet: Bullet's built-in collision"),
-        {"auto", "opencl", "host", "bullet"});
+    acceptOnly(app.add_option(
+                   "--backend", options.m_backend,
+                   "auto: a GPU, else any OpenCL device, but the host if it is faster; bullet: Bullet's own collision"),
+               {"auto", "opencl", "host", "bullet"});
     acceptOnly(app.add_option("--mode", options.m_contactMode, "how Drape treats motion within a step"),
                {"discrete", "continuous", "automatic"});
     acceptOnly(app.add_option("--solver", options.m_solver,
@@ -125,18 +124,20 @@ void addBackendOptions(CLI::App& app, Options& options, std::string& mode)
     app.add_option("--threads", options.m_threads,
                    "number of threads of the solver and of the host back end, 0 to 64; 0: one per core, 8 at most")
         ->check(CLI::Validator(wholeNumber(0, 64), ""));
-    acceptOnly(app.add_option(
-                   "--bullet-mode", mode,
-                   "with --backend bullet: distance field with stock or tuned settings, or two soft bodies (VF_SS)"),
-               {"stock", "tuned", "vfss"});
+    acceptOnly(
+        app.add_option(
+            "--bullet-mode", mode,
+            "with --backend bullet: distance field with default (stock) or tuned settings, or two soft bodies (VF_SS)"),
+        {"stock", "tuned", "vfss"});
     app.add_option("--device", options.m_device, "part of an OpenCL device's or platform's name")->type_name("TEXT");
     app.add_flag("--list-devices", options.m_listDevices, "list the OpenCL devices and exit");
-    app.add_flag("--compare", options.m_compare,
-                 "afterwards run the same scene with Bullet's built-in collision, stock and tuned");
+    app.add_flag(
+        "--compare", options.m_compare,
+        "afterwards run the same scene with Bullet's own collision, with default settings (stock) and tuned ones");
     app.add_flag("--compare-vfss", options.m_compareSoftPair,
                  "with --compare: also run Bullet with two soft bodies (VF_SS)");
     app.add_option("--compare-cap", options.m_compareCap,
-                   "seconds of stepping after which each built-in run of --compare ends")
+                   "seconds of stepping after which each run of Bullet's own collision in --compare ends")
         ->check(CLI::Validator(numberAbove(0, false, "more than 0"), ""));
 }
 

@@ -18,9 +18,9 @@ struct StepTimes
 {
     double m_stepMs = 0;       // wall time of stepSimulation
     double m_collisionMs = 0;  // part of the step: Bullet's collision detection and all work of Drape
-    WholeStepParts m_parts;    // parts of m_stepMs; 0 for the built-in collision
+    WholeStepParts m_parts;    // parts of m_stepMs; 0 for Bullet's own collision
     std::size_t m_contacts = 0;
-    // Work counts as in StepStatistics; 0 for the built-in collision.
+    // Work counts as in StepStatistics; 0 for Bullet's own collision.
     std::uint64_t m_candidates = 0;
     std::size_t m_sweptTests = 0;
     std::size_t m_clothsSkipped = 0;
@@ -52,7 +52,7 @@ public:
     virtual std::string trouble() const = 0;
 };
 
-// Makes the simulation with Bullet's built-in collision. Destroying it can take minutes (Bullet's distance field looks
+// Makes the simulation with Bullet's own collision. Destroying it can take minutes (Bullet's distance field looks
 // for each triangle).
 std::unique_ptr<Simulation> makeBulletSimulation(const DropScene& scene, BulletMode mode);
 

@@ -9,7 +9,7 @@
 
 namespace drape
 {
-// Returns the inverse mass; 0 for a node that contacts may not move: one without mass or anchored to a rigid body.
+// Returns the inverse mass; 0 for a node that contacts may not move: one that is pinned, or anchored to a rigid body.
 inline btScalar movableInverseMass(const btSoftBody::Node& node)
 {
     return node.m_battach ? btScalar(0) : node.m_im;
