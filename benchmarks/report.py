@@ -25,8 +25,9 @@ METHODS = {
     "fcl_pairs": "FCL, pairs only", "fcl_collide": "FCL, thickness 0",
 }
 RUNS = {"drape": "Drape, OpenCL", "drape_host": "Drape, host", "automatic": "Drape, automatic",
-        "continuous": "Drape, continuous", "discrete": "Drape, discrete", "bullet_stock": "Bullet's own, default settings",
-        "bullet_tuned": "Bullet's own, tuned", "stock": "Bullet's own, default settings", "tuned": "Bullet's own, tuned"}
+        "continuous": "Drape, continuous", "discrete": "Drape, discrete",
+        "bullet_stock": "Bullet's own, default settings", "stock": "Bullet's own, default settings",
+        "bullet_tuned": "Bullet's own, tuned", "tuned": "Bullet's own, tuned"}
 # The size that a sweep of bench_step varies, and its label.
 SWEEPS = {
     "cloth": (lambda row: row["cloth_triangles"], "cloth triangles, on the bunny"),
