@@ -18,7 +18,7 @@ namespace drape
 class FoundContacts
 {
 public:
-    // Nothing found, nothing named.
+    // Forgets all contacts and names.
     void clear() { *this = FoundContacts(); }
     void nameCloth(MeshId cloth, const btSoftBody* body) { m_bodies[cloth] = body; }
     void nameObstacle(MeshId obstacle, const btCollisionObject* object, const BodyMotion& motion);

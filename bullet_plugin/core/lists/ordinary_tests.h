@@ -23,7 +23,7 @@ struct TestLimits
     {
         return {std::size_t(float(m_tests) * share), std::size_t(float(m_swept) * share)};
     }
-    // No more than there are numbers.
+    // Adds, and stops at the largest number.
     void operator+=(const TestLimits& other)
     {
         m_tests += std::min(other.m_tests, SIZE_MAX - m_tests);

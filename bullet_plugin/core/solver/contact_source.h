@@ -44,7 +44,7 @@ public:
     }
     // Returns the meshes; null before set().
     const Scene* scene() const { return m_scene; }
-    // All contacts of the detection, those of addOwn() excepted.
+    // Returns the detection's contacts, without those of addOwn().
     ContactList list() const { return m_list; }
     // The detection's list on the device; empty if list() is on the host.
     DeviceContacts onDevice() const { return m_onDevice; }

@@ -53,7 +53,7 @@ public:
     const NodePath* paths() const { return m_paths.data(); }
     NodeState* states() { return m_states.data(); }
     Vec3 start(std::size_t node) const { return m_paths[node].m_start; }
-    // The path, from the start to the end.
+    // Returns the vector from the path's start to its end, m.
     Vec3 pathVector(std::size_t node) const { return m_paths[node].m_vector; }
     Vec3 end(std::size_t node) const { return vec3Add(start(node), pathVector(node)); }
     Vec3 displacement(std::size_t node) const { return m_nodes[node].m_displacement; }

@@ -6,7 +6,7 @@
 
 #include <string>
 
-// Everything of Drape's interface but the query records' macros.
+// The namespace of Drape's public interface.
 namespace drape
 {
 // Names the call that failed and its cause. An Error owns its text.

@@ -26,8 +26,8 @@ typedef struct SelfPatches
     DRAPE_GLOBAL float* m_wideNodes;
 } SelfPatches;
 
-// m, per cloth: half the reach, negative for cloths that do not collide with themselves in the step; the thickness;
-// the reach of the search for obstacles.
+// Lengths per cloth, m: half the reach (negative: no self collision in the step), the thickness, the reach of the
+// obstacle search.
 typedef struct SelfRadii
 {
     const DRAPE_GLOBAL float* m_radius;

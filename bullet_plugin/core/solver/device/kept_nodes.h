@@ -79,7 +79,7 @@ private:
     Buffer<KeptBounds> m_bounds{"kept nodes"};
     std::vector<KeptCloth> m_detectedSent, m_solvedSent;
     std::vector<KeptBounds> m_emptyBounds, m_boundsRead;
-    // By cloth, in the order of their memory.
+    // Nodes read and written, cloth by cloth in the order of their memory.
     std::unique_ptr<Staging<KeptNode>> m_read = std::make_unique<Staging<KeptNode>>();
     std::unique_ptr<Staging<KeptNode>> m_written = std::make_unique<Staging<KeptNode>>();
     KeptLaunch m_launch = {};
