@@ -359,4 +359,32 @@ TEST(StartsOnHost, DiagnoseNamesWhatIsLeftToBulletAndWhy)
     world.addCloth(clothAt(0.8f));
     EXPECT_TRUE(contains(plugin.diagnose(world.world()), "not a triangle mesh shape"));
 }
+// The cloth stays near another mesh meanwhile, so that its own record lives on.
+TEST(Starts, AnObstacleThatComesBackIsCheckedAgain)
+{
+    for (const int absent : {2, 6, 40})
+    {
+        MeshShape floor(makeBox(6, 0.2f, 6)), box(makeBox(0.6f, 0.6f, 0.6f));
+        Plugin plugin(hostSettings());
+        DropWorld world(&plugin);
+        world.addObstacle(floor.shape());
+        btCollisionObject& object =
+            world.addObstacle(box.shape(), btTransform(btQuaternion::getIdentity(), btVector3(0, 0.4f, 0)));
+        btSoftBody& cloth = world.addCloth(clothAt(0.75f, 17));
+        world.step(30);
+        ASSERT_EQ(plugin.statistics().m_status, std::uint32_t(kStepGood));
+        world.world().removeCollisionObject(&object);
+        // It falls through the place of the box, and is there when the box comes back.
+        world.step(absent);
+        while (absent > 2 && lowestOf(cloth) > 0.3f)
+            world.step();
+        for (int i = 0; i < cloth.m_nodes.size(); ++i)
+            if (absent == 2) cloth.m_nodes[i].m_x = cloth.m_nodes[i].m_q = cloth.m_nodes[i].m_x - btVector3(0, 0.3f, 0);
+        world.step();
+        world.world().addCollisionObject(&object, btBroadphaseProxy::StaticFilter,
+                                         btBroadphaseProxy::AllFilter ^ btBroadphaseProxy::StaticFilter);
+        world.step();
+        EXPECT_NE(plugin.statistics().m_status & kStepStartsIntersecting, 0u) << absent;
+    }
+}
 }  // namespace drape::test

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -412,5 +413,43 @@ TEST(Substeps, ManySmallClothsGiveTheSameBitsAsOneAtATime)
         return hash;
     };
     EXPECT_EQ(hashWith(1), hashWith(3));
+}
+// What is not finite stays where it is: links do not hand it on.
+TEST(Substeps, ANodeThatIsNoNumberDoesNotSpread)
+{
+    enum class Harm
+    {
+        Velocity,
+        Position,
+        LinkLength
+    };
+    for (const SolverPlace place : {SolverPlace::Host, SolverPlace::Device})
+    {
+        for (const Harm harm : {Harm::Velocity, Harm::Position, Harm::LinkLength})
+        {
+            Settings settings = place == SolverPlace::Host ? hostSettings() : Settings();
+            settings.m_solverPlace = place;
+            Plugin plugin(settings);
+            MeshShape box(makeBox(2, 0.2f, 2));
+            DropWorld world(&plugin);
+            world.addObstacle(box.shape());
+            ClothSpec spec;
+            spec.m_centre = btVector3(0, btScalar(0.2), 0);
+            btSoftBody& cloth = world.addCloth(spec);
+            world.step(30);
+            const btScalar nothing = std::numeric_limits<btScalar>::quiet_NaN();
+            if (harm == Harm::Velocity) cloth.m_nodes[7].m_v.setX(nothing);
+            if (harm == Harm::Position) cloth.m_nodes[7].m_x.setX(nothing);
+            if (harm == Harm::LinkLength) cloth.m_links[3].m_c1 = std::numeric_limits<btScalar>::infinity();
+            world.step(6);
+            int lost = 0;
+            for (int i = 0; i < cloth.m_nodes.size(); ++i)
+                lost += !std::isfinite(cloth.m_nodes[i].m_x.length2());
+            const int expected = harm == Harm::LinkLength ? 0 : 1;
+            EXPECT_EQ(lost, expected) << int(place) << " " << int(harm);
+            const bool isTold = (plugin.statistics().m_status & kStepInvalidNodes) != 0;
+            EXPECT_EQ(isTold, lost > 0) << int(place) << " " << int(harm);
+        }
+    }
 }
 }  // namespace drape::test

@@ -152,20 +152,37 @@ TEST_F(Outputs, CsvHasARowForEachStep)
     EXPECT_NE(csv.find("\n10,"), std::string::npos);
 }
 
+TEST_F(Outputs, LayersMeetUnlessTheyCollide)
+{
+    const auto drop = [&](const char* file, const char* how)
+    {
+        return run({"--cloth", "13x13", "--backend", "host", "--steps", "60", "--layers", "3", how, "--json",
+                    path(file)})
+            .m_exitCode;
+    };
+    ASSERT_EQ(drop("apart.json", "--quiet"), 0);
+    ASSERT_EQ(drop("self.json", "--self"), 0);
+    const Json apart = Json::parse(readAll(path("apart.json"))), self = Json::parse(readAll(path("self.json")));
+    EXPECT_GT(apart["self_intersecting_pairs_max"], 0);
+    EXPECT_EQ(self["self_intersecting_pairs_max"], 0);
+    EXPECT_EQ(self["self_intersecting_pairs_end"], 0);
+}
+
 TEST_F(Outputs, ThePartsOfAStepAddUpToTheWhole)
 {
+    constexpr std::size_t kFirstPart = 13;  // column
     for (const char* solver : {"drape", "bullet"})
     {
         SCOPED_TRACE(solver);
         ASSERT_EQ(runSmall({"--cloth", "33x33", "--solver", solver, "--csv", path("steps.csv")}).m_exitCode, 0);
         const std::vector<std::vector<std::string>> rows = cellsOf(readAll(path("steps.csv")));
-        EXPECT_EQ(rows.at(0).at(12), "rigid_ms");
-        EXPECT_EQ(rows.at(0).size(), 12 + stepParts().size());
+        EXPECT_EQ(rows.at(0).at(kFirstPart), "rigid_ms");
+        EXPECT_EQ(rows.at(0).size(), kFirstPart + stepParts().size());
         double whole = 0, parts = 0;
         for (std::size_t i = 1; i < rows.size(); ++i)
         {
             whole += std::stod(rows[i].at(2));
-            for (std::size_t column = 12; column < rows[i].size(); ++column)
+            for (std::size_t column = kFirstPart; column < rows[i].size(); ++column)
                 parts += std::stod(rows[i][column]);
         }
         EXPECT_GT(parts, 0.95 * whole);

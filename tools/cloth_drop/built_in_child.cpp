@@ -33,6 +33,8 @@ std::vector<std::string> childArguments(const Options& options, BulletMode mode)
         std::to_string(options.m_clothColumns) + "x" + std::to_string(options.m_clothRows),
         "--cloth-size",
         exactText(options.m_clothSize),
+        "--layers",
+        std::to_string(options.m_layers),
         "--drop-height",
         exactText(options.m_dropHeight),
         "--drop-speed",
@@ -49,6 +51,7 @@ std::vector<std::string> childArguments(const Options& options, BulletMode mode)
         modeName(mode),
         "--quiet",
         "--stream-steps"};
+    if (options.m_self) arguments.emplace_back("--self");
     if (!options.m_picture.empty()) arguments.emplace_back("--stream-positions");
     return arguments;
 }
@@ -59,11 +62,12 @@ void describe(RunRecord& record, BulletMode mode, const DropScene& scene)
     record.m_device = "host";
     record.m_solver = "bullet";
     record.m_deviceReason = "Bullet's own collision runs on the host";
-    record.m_clothTriangles = scene.m_sheets.triangleCount();
-    record.m_clothNodes = scene.m_sheets.vertexCount();
+    const TriangleMesh sheets = sheetsOf(scene);
+    record.m_clothTriangles = sheets.triangleCount();
+    record.m_clothNodes = sheets.vertexCount();
     record.m_obstacleTriangles = scene.m_obstacle.triangleCount();
     record.m_thickness = scene.m_thickness;
-    record.m_lastPositions = scene.m_sheets.m_positions;
+    record.m_lastPositions = sheets.m_positions;
 }
 }  // namespace
 

@@ -25,25 +25,6 @@ constexpr double kLayerDistance = 1.5;
 // Each sheet is turned about the vertical against the one below, so that edges of neighbours are not parallel.
 constexpr double kLayerTurn = 0.12;
 
-// Adds the scene's sheets above one another.
-void addSheets(DropScene& scene)
-{
-    const TriangleMesh& sheet = scene.m_cloth.m_mesh;
-    for (std::size_t layer = 0; layer < scene.m_layers; ++layer)
-    {
-        const double angle = kLayerTurn * double(layer), rise = kLayerDistance * scene.m_thickness * double(layer);
-        const double c = std::cos(angle), s = std::sin(angle);
-        const auto first = static_cast<std::int32_t>(scene.m_sheets.vertexCount());
-        for (std::size_t i = 0; i < sheet.m_positions.size(); i += 3)
-        {
-            const double x = sheet.m_positions[i], z = sheet.m_positions[i + 2];
-            addVertex(scene.m_sheets, c * x - s * z, sheet.m_positions[i + 1] + rise, s * x + c * z);
-        }
-        for (const std::int32_t node : sheet.m_triangles)
-            scene.m_sheets.m_triangles.push_back(first + node);
-    }
-}
-
 // Suggests a shape where the name is neither a file nor a shape.
 bool makeObstacle(const std::string& name, TriangleMesh& mesh, LoadReport& report, std::string& error)
 {
@@ -58,6 +39,26 @@ bool makeObstacle(const std::string& name, TriangleMesh& mesh, LoadReport& repor
     return false;
 }
 }  // namespace
+
+TriangleMesh sheetsOf(const DropScene& scene)
+{
+    TriangleMesh sheets;
+    const TriangleMesh& sheet = scene.m_cloth.m_mesh;
+    for (std::size_t layer = 0; layer < scene.m_layers; ++layer)
+    {
+        const double angle = kLayerTurn * double(layer), rise = kLayerDistance * scene.m_thickness * double(layer);
+        const double c = std::cos(angle), s = std::sin(angle);
+        const auto first = static_cast<std::int32_t>(sheets.vertexCount());
+        for (std::size_t i = 0; i < sheet.m_positions.size(); i += 3)
+        {
+            const double x = sheet.m_positions[i], z = sheet.m_positions[i + 2];
+            addVertex(sheets, c * x - s * z, sheet.m_positions[i + 1] + rise, s * x + c * z);
+        }
+        for (const std::int32_t node : sheet.m_triangles)
+            sheets.m_triangles.push_back(first + node);
+    }
+    return sheets;
+}
 
 bool makeDropScene(const Options& options, DropScene& scene, std::string& error)
 {
@@ -78,7 +79,6 @@ bool makeDropScene(const Options& options, DropScene& scene, std::string& error)
     scene.m_dropSpeed = options.m_dropSpeed;
     scene.m_dt = options.m_dt;
     scene.m_thickness = options.m_thickness;
-    addSheets(scene);
     return true;
 }
 

@@ -17,7 +17,6 @@ struct DropScene
     TriangleMesh m_obstacle;
     ClothGrid m_cloth;                 // the lowest sheet
     std::size_t m_layers = 1;          // sheets above one another
-    TriangleMesh m_sheets;             // all sheets as one mesh, one after the other, the lowest first
     bool m_self = false;               // sheets collide with themselves and with each other
     double m_dropSpeed = 0;            // m/s downwards, of the whole cloth at the start
     double m_dt = 0;                   // s
@@ -25,6 +24,9 @@ struct DropScene
     double m_mass = 1.0;               // kg, of each sheet
     std::vector<std::string> m_notes;  // parts of the obstacle's file that were left out or lost, one line each
 };
+
+// Returns all sheets as one mesh, one after the other, the lowest first.
+TriangleMesh sheetsOf(const DropScene& scene);
 
 // Returns false, with one line in `error`, if the obstacle cannot be made.
 bool makeDropScene(const Options& options, DropScene& scene, std::string& error);

@@ -126,10 +126,10 @@ void DropWorld::addCloths(const DropScene& scene, bool softPairs)
 {
     TriangleMesh sheet = scene.m_cloth.m_mesh;
     const std::size_t count = sheet.m_positions.size();
+    const std::vector<float> positions = sheetsOf(scene).m_positions;
     for (std::size_t layer = 0; layer < scene.m_layers; ++layer)
     {
-        std::copy_n(scene.m_sheets.m_positions.begin() + std::ptrdiff_t(layer * count), count,
-                    sheet.m_positions.begin());
+        std::copy_n(positions.begin() + std::ptrdiff_t(layer * count), count, sheet.m_positions.begin());
         addSheet(scene, sheet, softPairs);
     }
 }

@@ -89,7 +89,7 @@ bool runFirst(const Options& options, const DropScene& scene, NamedRun& run, std
 PicturePanel panelOf(const NamedRun& run, const DropScene& scene)
 {
     PicturePanel panel;
-    panel.m_cloth = scene.m_sheets;
+    panel.m_cloth = sheetsOf(scene);
     if (!run.m_record.m_lastPositions.empty()) panel.m_cloth.m_positions = run.m_record.m_lastPositions;
     const RunSummary summary = summarise(run.m_record);
     panel.m_title = (run.m_name == "drape" ? "Drape, " : "") + run.m_record.m_backend;

@@ -212,8 +212,8 @@ void addMeasures(std::string& table, const std::vector<RunSummary>& summaries)
         });
     add("stretch, mean, end, %", [](Run run) { return text("%.2f", 100 * run.m_stretch.m_mean); });
     add("stretch, maximum, end, %", [](Run run) { return text("%.2f", 100 * run.m_stretch.m_max); });
-    add("cloth pairs intersecting, end (maximum)", [](Run run)
-        { return count(run.m_selfPairsEnd) + " (" + count(run.m_selfPairsMax) + ")"; });
+    add("cloth pairs intersecting, end (maximum)",
+        [](Run run) { return count(run.m_selfPairsEnd) + " (" + count(run.m_selfPairsMax) + ")"; });
     add("NaN nodes", [](Run run) { return count(run.m_invalidNodes); });
     add("hash", [](Run run) { return hashText(run.m_hash); });
 }

@@ -10,12 +10,12 @@ namespace drape
 {
 namespace
 {
-RunRecord startRecord(const Simulation& simulation, const DropScene& scene)
+RunRecord startRecord(const Simulation& simulation, const DropScene& scene, const TriangleMesh& sheets)
 {
     RunRecord record;
     record.m_prepareMs = simulation.prepareMs();
-    record.m_clothTriangles = scene.m_sheets.triangleCount();
-    record.m_clothNodes = scene.m_sheets.vertexCount();
+    record.m_clothTriangles = sheets.triangleCount();
+    record.m_clothNodes = sheets.vertexCount();
     record.m_obstacleTriangles = scene.m_obstacle.triangleCount();
     record.m_thickness = scene.m_thickness;
     return record;
@@ -25,12 +25,13 @@ RunRecord startRecord(const Simulation& simulation, const DropScene& scene)
 bool runSimulation(Simulation& simulation, const DropScene& scene, int steps, const std::string& framesFolder,
                    const RunHooks& hooks, RunRecord& record, std::string& error)
 {
-    record = startRecord(simulation, scene);
-    TriangleMesh lastFrame = scene.m_sheets;
-    PenetrationMeter meter(scene.m_obstacle, scene.m_sheets);
-    Crossings crossings(scene.m_obstacle, scene.m_sheets.m_positions);
-    SelfIntersections self(scene.m_sheets);
-    const StretchMeter stretch(scene.m_sheets);
+    const TriangleMesh sheets = sheetsOf(scene);
+    record = startRecord(simulation, scene, sheets);
+    TriangleMesh lastFrame = sheets;
+    PenetrationMeter meter(scene.m_obstacle, sheets);
+    Crossings crossings(scene.m_obstacle, sheets.m_positions);
+    SelfIntersections self(sheets);
+    const StretchMeter stretch(sheets);
     std::uint64_t hash = kHashStart;
     const bool frames = !framesFolder.empty();
     if (frames && !(writeMesh(framesFolder + "/obstacle.ply", scene.m_obstacle, error) &&

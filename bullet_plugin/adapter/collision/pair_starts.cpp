@@ -186,9 +186,10 @@ void PairStarts::tell(const StartingPair& pair, Guard& guard, bool pushed)
     m_state.log(line);
 }
 
-bool PairStarts::startsAnew(const StartingPair& pair, const Guard& guard)
+// A pair that was absent may have got into each other: its boxes were apart, or one was not in the world.
+bool PairStarts::startsAnew(const StartingPair& pair, const Guard& guard) const
 {
-    return !guard.m_checked || guard.m_intersections > 0 || guard.m_outSteps > 0 ||
+    return !guard.m_checked || guard.m_lastStep + 1 < m_step || guard.m_intersections > 0 || guard.m_outSteps > 0 ||
            guard.m_clothRevision != pair.m_cloth->startRevision() ||
            guard.m_obstacleRevision != pair.m_obstacle->startRevision();
 }
@@ -220,9 +221,9 @@ bool PairStarts::endsMeeting(const StartingPair& pair)
 void PairStarts::check(const StartingPair& pair, const std::vector<int>& jumped, BodyContacts& body)
 {
     Guard& guard = m_guards[std::uint64_t(pair.m_cloth->id()) << 32 | pair.m_obstacle->id()];
-    guard.m_lastStep = m_step;
     body.m_wasTangled = body.m_wasTangled || m_step < guard.m_calmUntil;
     const bool anew = startsAnew(pair, guard);
+    guard.m_lastStep = m_step;
     if (!anew && jumped.empty()) return;
     if (!guard.m_checked) tellMargins(pair);
     guard.m_checked = true;

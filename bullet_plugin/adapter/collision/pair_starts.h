@@ -2,8 +2,9 @@
 // alone would keep such cloth on the wrong side.
 //
 // Job: a pair is guarded once a check found none of its triangles intersecting at a step's start. New, restarted and
-// intersecting pairs are checked, and faces of displaced nodes. Nodes on the wrong side of a closed obstacle are
-// pushed to its nearest surface point at a bounded speed. Pairs with an open obstacle are only reported.
+// intersecting pairs are checked, pairs that were absent from a step, and faces of displaced nodes. Nodes on the wrong
+// side of a closed obstacle are pushed to its nearest surface point at a bounded speed. Pairs with an open obstacle are
+// only reported.
 //
 // Cost: a comparison per node of a guarded pair. A new pair takes a pass over the obstacle's triangles if the boxes
 // meet, and O(log n) per cloth face if a triangle enters the cloth's box. Deterministic with any number of threads.
@@ -84,7 +85,7 @@ private:
         std::vector<std::uint32_t> m_triangles;
     };
 
-    static bool startsAnew(const StartingPair& pair, const Guard& guard);
+    bool startsAnew(const StartingPair& pair, const Guard& guard) const;
     using Row = std::map<int, btVector3>;  // by node, direction of the push, of any length
 
     void listFaces(const StartingPair& pair, const std::vector<int>* nodes);

@@ -193,7 +193,7 @@ void SoftBodySolver::Work::solveBodies()
     parts.m_writeBackMs = watch.lapMs();
 }
 
-// Keeps bodies that strayed from their predicted paths at their distance from what is near their real ones. A body that
+// Keeps bodies that left their predicted paths at their distance from what is near their real ones. A body that
 // would pass a surface on the way goes back to where it was checked.
 void SoftBodySolver::Work::closeOffPath(const std::vector<BodyContacts*>& bodies)
 {

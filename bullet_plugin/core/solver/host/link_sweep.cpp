@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cfloat>
 #include <cstring>
+#include <limits>
 #include <numeric>
 #include <tuple>
 
@@ -160,15 +161,18 @@ void LinkSweep::visitGroup(std::size_t group, SolverNode* nodes) const
             apart[axis] = load(block.m_apart[axis]) + (b[axis] - a[axis]);
         const Lanes length2 = apart[0] * apart[0] + apart[1] * apart[1] + apart[2] * apart[2];
         const Lanes rest2 = load(block.m_restSquared), sum = rest2 + length2;
-        // Bullet's approximation of the distance's correction without a root; it leaves out links without length.
-        const auto isLong = sum > FLT_EPSILON;
-        const Lanes share = load(block.m_strength) * (rest2 - length2) / (isLong ? sum : Lanes{1, 1, 1, 1});
-        const Lanes push = isLong ? share : Lanes{0, 0, 0, 0};
+        // As visitLink() of kernels/lib/solver/link_row.h: links without length, or with one that is not finite, do
+        // nothing.
+        const auto acts = (sum > FLT_EPSILON) & (sum < std::numeric_limits<float>::infinity());
+        const Lanes none = {0, 0, 0, 0};
+        const Lanes share = load(block.m_strength) * (rest2 - length2) / (acts ? sum : Lanes{1, 1, 1, 1});
+        const Lanes push = acts ? share : none;
         const Lanes pushA = push * a[3], pushB = push * b[3];
         for (int axis = 0; axis < 3; ++axis)
         {
-            a[axis] -= apart[axis] * pushA;
-            b[axis] += apart[axis] * pushB;
+            const Lanes span = acts ? apart[axis] : none;
+            a[axis] -= span * pushA;
+            b[axis] += span * pushB;
         }
         transpose(a);
         transpose(b);
