@@ -414,7 +414,7 @@ TEST(Substeps, ManySmallClothsGiveTheSameBitsAsOneAtATime)
     };
     EXPECT_EQ(hashWith(1), hashWith(3));
 }
-// What is not finite stays where it is: links do not hand it on.
+// Links do not hand on what is not finite.
 TEST(Substeps, ANodeThatIsNoNumberDoesNotSpread)
 {
     enum class Harm
@@ -451,5 +451,26 @@ TEST(Substeps, ANodeThatIsNoNumberDoesNotSpread)
             EXPECT_EQ(isTold, lost > 0) << int(place) << " " << int(harm);
         }
     }
+}
+// Beside a wall it would come to rest in the air, since damping takes all of its speed in every substep.
+TEST(Substeps, DampedClothBesideAWallFallsAsAlone)
+{
+    std::vector<btScalar> heights;
+    for (const bool hasWall : {false, true})
+    {
+        Plugin plugin(hostSettings());
+        MeshShape wall(makeBox(1, 8, 8));
+        DropWorld world(&plugin);
+        const btTransform pose(btQuaternion::getIdentity(), btVector3(btScalar(1.021), 0, 0));
+        if (hasWall) world.addObstacle(wall.shape(), pose);
+        btSoftBody& cloth = world.addCloth(ClothSpec());
+        cloth.m_cfg.kDP = 1;
+        cloth.m_cfg.piterations = 70;
+        world.step(30);
+        heights.push_back(lowestOf(cloth));
+        EXPECT_EQ(plugin.statistics().m_contacts > 0, hasWall);
+    }
+    EXPECT_LT(heights[0], btScalar(-0.0008));
+    EXPECT_NEAR(heights[1], heights[0], 1e-5f);
 }
 }  // namespace drape::test

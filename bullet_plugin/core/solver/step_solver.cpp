@@ -259,7 +259,10 @@ void StepSolver::holdOthers()
 void StepSolver::settle()
 {
     const auto isSettled = [](const ContactSweep* sweep)
-    { return sweep->cloth().m_substeps && !sweep->cloth().m_rigid && obstaclesRest(sweep); };
+    {
+        const SolverCloth& cloth = sweep->cloth();
+        return cloth.m_substeps && cloth.m_substeps->settles() && !cloth.m_rigid && obstaclesRest(sweep);
+    };
     select(m_touching, m_turn, isSettled);
     const auto settleNodes = [](ContactSweep& sweep)
     {

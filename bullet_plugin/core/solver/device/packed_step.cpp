@@ -97,7 +97,7 @@ void PackedStep::packCloth(std::size_t index, const ContactSource& source, const
     cloth.m_linkSweeps = Substeps::kLinkSweeps;
     cloth.m_actingSweeps = std::uint32_t(actingSweepsOf(substeps.count()));
     cloth.m_rests = limit.obstaclesRest() ? 1 : 0;
-    cloth.m_settles = cloth.m_rests && !m_cloths[index].m_rigid ? 1 : 0;
+    cloth.m_settles = cloth.m_rests && substeps.settles() && !m_cloths[index].m_rigid ? 1 : 0;
     cloth.m_substepTime = substeps.substepTime();
     cloth.m_perStep = substeps.perStep();
     cloth.m_pathShare = substeps.pathTime();

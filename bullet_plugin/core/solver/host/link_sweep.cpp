@@ -161,8 +161,7 @@ void LinkSweep::visitGroup(std::size_t group, SolverNode* nodes) const
             apart[axis] = load(block.m_apart[axis]) + (b[axis] - a[axis]);
         const Lanes length2 = apart[0] * apart[0] + apart[1] * apart[1] + apart[2] * apart[2];
         const Lanes rest2 = load(block.m_restSquared), sum = rest2 + length2;
-        // As visitLink() of kernels/lib/solver/link_row.h: links without length, or with one that is not finite, do
-        // nothing.
+        // Links do what visitLink() of kernels/lib/solver/link_row.h does.
         const auto acts = (sum > FLT_EPSILON) & (sum < std::numeric_limits<float>::infinity());
         const Lanes none = {0, 0, 0, 0};
         const Lanes share = load(block.m_strength) * (rest2 - length2) / (acts ? sum : Lanes{1, 1, 1, 1});

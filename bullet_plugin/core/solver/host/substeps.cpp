@@ -16,6 +16,9 @@ constexpr std::size_t kLeastShared = 8192, kRange = 2048;
 // changeOver() a larger ratio halves the greatest speed of cloth whose links contract (0.09 against 0.17 m/s).
 constexpr float kLeastRatio = 0.8f, kRatioAfterChange = 0.9f;
 
+// Maximum damping with which nodes settle.
+constexpr float kMostSettledDamping = 0.5f;
+
 // Calls work(node) for all nodes.
 template <class Work>
 void forNodes(std::size_t count, ThreadTeam* threads, const Work& work)
@@ -42,6 +45,7 @@ void Substeps::prepare(float time, int count, float damping, const std::vector<V
         m_leastRatio = kLeastRatio;
     }
     m_accelerations = &accelerations;
+    m_settles = damping <= kMostSettledDamping;
     m_undamped = float(std::pow(1 - std::min(1.0, std::max(0.0, double(damping))), 1.0 / count));
 }
 

@@ -36,6 +36,9 @@ public:
     float perStep() const { return 1 / m_time; }
     // Returns the share of a velocity that damping leaves in a substep.
     float undamped() const { return m_undamped; }
+    // Returns whether nodes that hardly move may come to rest. Where damping takes most of a speed in every step, free
+    // nodes hardly move, either.
+    bool settles() const { return m_settles; }
     // Returns the share of the acceleration in a node's mean velocity, s.
     float pathTime() const { return pathShare(m_count) * m_time; }
     const Vec3* accelerations() const { return m_accelerations->data(); }
@@ -70,5 +73,6 @@ private:
     int m_count = 1;
     float m_leastRatio = 1;  // minimum of m_correctionTime, as a share of that of the step before
     bool m_changesOver = false;
+    bool m_settles = true;
 };
 }  // namespace drape
