@@ -49,7 +49,8 @@ TEST(StatusText, NamesEveryBit)
     std::string all;
     for (const std::uint32_t bit :
          {kStepInvalidNodes, kStepDeviceFailed, kStepDeviceFull, kStepClothsLeftOut, kStepCoarsePositions,
-          kStepStartsIntersecting, kStepFacesLeftOut, kStepSurfacePassed, kStepMotionHeldBack, kStepOutOfMemory})
+          kStepStartsIntersecting, kStepFacesLeftOut, kStepSurfacePassed, kStepMotionHeldBack, kStepOutOfMemory,
+          kStepClothsMeet})
     {
         EXPECT_NE(statusText(bit), "");
         EXPECT_EQ(statusText(bit).find(';'), std::string::npos);
