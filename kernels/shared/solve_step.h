@@ -176,7 +176,8 @@ typedef struct SolveProgress
     DRAPE_UINT m_isNear;   // true if a contact ends so near that a surface may have been passed
     DRAPE_UINT m_refused;  // true if a feature has too many contacts
     DRAPE_UINT m_meets;    // true if a node's path meets a surface
-    DRAPE_UINT m_unused[2];
+    DRAPE_UINT m_pushed;   // true if a contact pushed in the step
+    DRAPE_UINT m_unused;
     float m_worst[DRAPE_CLOSING_SWEEPS + 4];  // m, by closing sweep
 } SolveProgress;
 

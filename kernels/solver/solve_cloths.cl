@@ -73,6 +73,7 @@ DRAPE_RARE_FUNCTION void endSubsteps(const Solve* solve)
 {
     const SolveRange nodes = solve->m_group->m_nodes;
     endNodes(solve, nodes);
+    syncAll();  // shows SolveProgress::m_pushed to all work-items
     settleNodes(solve, nodes);
     rememberNodes(solve, nodes);
     syncNodes();

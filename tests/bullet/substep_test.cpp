@@ -2,10 +2,12 @@
 // bodies that Bullet solves for a step.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "BulletSoftBody/btSoftBodyHelpers.h"
@@ -472,5 +474,59 @@ TEST(Substeps, DampedClothBesideAWallFallsAsAlone)
     }
     EXPECT_LT(heights[0], btScalar(-0.0008));
     EXPECT_NEAR(heights[1], heights[0], 1e-5f);
+}
+
+namespace
+{
+// Swings a cloth that hangs from its upper edge, 1 mm aside at first, beside a wall 27 mm away or without one. Returns
+// the least and the most x (m) of its lower edge.
+std::pair<btScalar, btScalar> swing(SolverPlace place, bool hasWall)
+{
+    Settings settings = place == SolverPlace::Host ? hostSettings() : Settings();
+    settings.m_solverPlace = place;
+    Plugin plugin(settings);
+    MeshShape wall(makeBox(1, 8, 8));
+    DropWorld world(&plugin);
+    const btTransform pose(btQuaternion::getIdentity(), btVector3(btScalar(0.527), 0, 0));
+    if (hasWall) world.addObstacle(wall.shape(), pose);
+    ClothSpec spec;
+    spec.m_nodes = 9;
+    spec.m_damping = 0;
+    btSoftBody& cloth = world.addCloth(spec);
+    cloth.m_cfg.piterations = 8;
+    cloth.rotate(btQuaternion(btVector3(0, 0, 1), SIMD_HALF_PI + btScalar(0.001)));
+    std::vector<int> lower;
+    for (int i = 0; i < cloth.m_nodes.size(); ++i)
+    {
+        if (cloth.m_nodes[i].m_x.y() > btScalar(0.49)) cloth.setMass(i, 0);
+        if (cloth.m_nodes[i].m_x.y() < btScalar(-0.49)) lower.push_back(i);
+    }
+    std::pair<btScalar, btScalar> range(1, -1);
+    for (int step = 0; step < 120; ++step)
+    {
+        world.step();
+        EXPECT_EQ(plugin.statistics().m_contacts > 0, hasWall);
+        EXPECT_EQ(plugin.statistics().m_clothsSolvedOnDevice > 0, place == SolverPlace::Device);
+        for (const int node : lower)
+        {
+            range.first = std::min(range.first, cloth.m_nodes[node].m_x.x());
+            range.second = std::max(range.second, cloth.m_nodes[node].m_x.x());
+        }
+    }
+    return range;
+}
+}  // namespace
+
+// The wall is in detection's reach, and nothing touches it. Gravity hardly accelerates cloth that hangs almost
+// straight, so that it would come to rest where it is.
+TEST(Substeps, ClothSwingsBesideAWallAsAlone)
+{
+    for (const SolverPlace place : {SolverPlace::Host, SolverPlace::Device})
+    {
+        const auto alone = swing(place, false), beside = swing(place, true);
+        EXPECT_GT(alone.second - alone.first, btScalar(0.0015));
+        EXPECT_NEAR(beside.first, alone.first, 2e-5f) << int(place);
+        EXPECT_NEAR(beside.second, alone.second, 2e-5f) << int(place);
+    }
 }
 }  // namespace drape::test

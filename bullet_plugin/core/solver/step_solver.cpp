@@ -254,14 +254,15 @@ void StepSolver::holdOthers()
                      });
 }
 
-// Brings nodes to rest that hardly moved. Only for cloths that touch resting obstacles, and no rigid body: momentum
-// goes to the obstacle. Closing sweeps follow, so that the contacts hold.
+// Brings nodes to rest that hardly moved. Only for cloths that a contact pushed in this step, all of whose obstacles
+// rest, and that touch no rigid body: momentum goes to the obstacle. Closing sweeps follow, so that the contacts hold.
 void StepSolver::settle()
 {
     const auto isSettled = [](const ContactSweep* sweep)
     {
         const SolverCloth& cloth = sweep->cloth();
-        return cloth.m_substeps && cloth.m_substeps->settles() && !cloth.m_rigid && obstaclesRest(sweep);
+        return cloth.m_substeps && cloth.m_substeps->settles() && !cloth.m_rigid && obstaclesRest(sweep) &&
+               sweep->hasPushed();
     };
     select(m_touching, m_turn, isSettled);
     const auto settleNodes = [](ContactSweep& sweep)

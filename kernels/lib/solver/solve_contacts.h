@@ -160,7 +160,10 @@ DRAPE_HOT_FUNCTION void sweepBucket(const Solve* solve, const uint index, Sweep*
     // Most contacts find their rounds recorded: atomics on one word wait for each other.
     const uint record = DRAPE_PUSH_RECORD(sweep->m_phase, rounds);
     if (rounds > 0 && solve->m_shared[DRAPE_SHARED_PUSHED + index] < record)
+    {
         atomic_max(solve->m_shared + DRAPE_SHARED_PUSHED + index, record);
+        solve->m_progress->m_pushed = 1;
+    }
 }
 
 // Returns the next bucket, from `index` on, in which contacts act in this phase; the number of buckets if there is

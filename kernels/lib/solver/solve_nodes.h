@@ -30,10 +30,10 @@ static void endNodes(const Solve* solve, const SolveRange nodes)
         nodeEnd(nodeAt(solve, i), solve->m_states + i, solve->m_cloth->m_perCorrection, solve->m_cloth->m_undamped);
 }
 
-// See StepSolver::settle().
+// See StepSolver::settle(). The group's work-items must see SolveProgress::m_pushed.
 static void settleNodes(const Solve* solve, const SolveRange nodes)
 {
-    if (!solve->m_cloth->m_settles || solve->m_progress->m_blocks == 0) return;
+    if (!solve->m_cloth->m_settles || solve->m_progress->m_pushed == 0) return;
     forAll(i, nodes.m_first, nodes.m_first + nodes.m_count) if (solve->m_paths[i].m_inverseMass > 0.0f)
         nodeSettle(nodeAt(solve, i), solve->m_states + i, solve->m_accelerations[i], solve->m_cloth->m_perStep);
 }

@@ -271,6 +271,11 @@ void ContactGroup::limitSpeeds(const SweptCloth& cloth, Kinds kinds) const
                 limitSpeed(&m_rows[std::size_t(row)].m_acting, cloth.nodes().states());
 }
 
+bool ContactGroup::hasPushed() const
+{
+    return std::any_of(m_rows.begin(), m_rows.end(), [](const Row& row) { return row.m_acting.m_pushed != 0; });
+}
+
 // Returns whether a contact ends with less than `least` between its features' points, m. It may have turned to where
 // nodes were on the way, away from where they end.
 bool ContactGroup::endsNear(const SweptCloth& cloth, const Block& block, int lane, const Row& row, float least)

@@ -64,6 +64,8 @@ public:
     void sweepActing(const SweptCloth& cloth);
     // Removes from the nodes' velocities what a contact gained by recovering a depth that the step began with.
     void limitSpeeds(const SweptCloth& cloth, Kinds kinds) const;
+    // Returns whether a contact has pushed in the step.
+    bool hasPushed() const;
     // Returns whether a contact that was violated at any time ends with less than kNearShare of the thickness between
     // its features' points, so that the features may have passed each other.
     bool mayHavePassed(const SweptCloth& cloth) const;

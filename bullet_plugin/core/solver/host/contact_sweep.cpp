@@ -113,6 +113,12 @@ void ContactSweep::climb(std::size_t leaf, Pass pass)
     }
 }
 
+bool ContactSweep::hasPushed() const
+{
+    const auto pushed = [](const ContactGroup& group) { return group.hasPushed(); };
+    return std::any_of(m_groups.begin(), m_groups.begin() + std::ptrdiff_t(m_parts->groupCount()), pushed);
+}
+
 float ContactSweep::worst() const
 {
     return *std::max_element(m_worst.begin(), m_worst.end());

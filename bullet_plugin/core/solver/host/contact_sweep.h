@@ -49,6 +49,8 @@ public:
     const SolverCloth& cloth() const { return *m_owner; }
     ClothContacts& contacts() const { return *m_cloth.m_contacts; }
     SolverNodes& nodes() const { return m_cloth.nodes(); }
+    // Returns whether a contact has pushed since begin().
+    bool hasPushed() const;
 
 private:
     friend class SweepTeam;
