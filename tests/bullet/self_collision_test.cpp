@@ -110,6 +110,17 @@ TEST(SelfCollision, LayersOnASphereNeverMeetWithAnyNumberOfThreads)
     }
 }
 
+TEST(SelfCollision, LayersWhoseLinksBulletSolvesNeverMeet)
+{
+    Settings settings = hostSettings();
+    settings.m_solver = Solver::Bullet;
+    MeshShape sphere(makeSphere(0.5f, 3));
+    Layers layers(settings, 2, 0.03f);
+    layers.m_world.addObstacle(sphere.shape());
+    EXPECT_EQ(layers.run(60), 0u);
+    EXPECT_EQ(layers.m_status & kStepClothsMeet, 0u);
+}
+
 TEST(SelfCollision, LayersMeetWithoutIt)
 {
     MeshShape sphere(makeSphere(0.5f, 3));

@@ -47,10 +47,9 @@ TEST(StatusText, NamesEveryBit)
 {
     EXPECT_EQ(statusText(kStepGood), "");
     std::string all;
-    for (const std::uint32_t bit :
-         {kStepInvalidNodes, kStepDeviceFailed, kStepDeviceFull, kStepClothsLeftOut, kStepCoarsePositions,
-          kStepStartsIntersecting, kStepFacesLeftOut, kStepSurfacePassed, kStepMotionHeldBack, kStepOutOfMemory,
-          kStepClothsMeet})
+    for (const std::uint32_t bit : {kStepInvalidNodes, kStepDeviceFailed, kStepDeviceFull, kStepClothsLeftOut,
+                                    kStepCoarsePositions, kStepStartsIntersecting, kStepFacesLeftOut,
+                                    kStepSurfacePassed, kStepMotionHeldBack, kStepOutOfMemory, kStepClothsMeet})
     {
         EXPECT_NE(statusText(bit), "");
         EXPECT_EQ(statusText(bit).find(';'), std::string::npos);

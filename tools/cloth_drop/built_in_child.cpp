@@ -63,6 +63,7 @@ void describe(RunRecord& record, BulletMode mode, const DropScene& scene)
     record.m_solver = "bullet";
     record.m_deviceReason = "Bullet's own collision runs on the host";
     const TriangleMesh sheets = sheetsOf(scene);
+    record.m_countsClothPairs = countsClothPairs(scene);
     record.m_clothTriangles = sheets.triangleCount();
     record.m_clothNodes = sheets.vertexCount();
     record.m_obstacleTriangles = scene.m_obstacle.triangleCount();

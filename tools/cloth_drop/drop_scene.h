@@ -25,6 +25,13 @@ struct DropScene
     std::vector<std::string> m_notes;  // parts of the obstacle's file that were left out or lost, one line each
 };
 
+// Returns whether the pairs of cloth triangles that intersect are counted: where sheets may meet each other. The exact
+// check of a large flat cloth with itself takes seconds a step.
+inline bool countsClothPairs(const DropScene& scene)
+{
+    return scene.m_self || scene.m_layers > 1;
+}
+
 // Returns all sheets as one mesh, one after the other, the lowest first.
 TriangleMesh sheetsOf(const DropScene& scene);
 

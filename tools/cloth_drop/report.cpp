@@ -94,8 +94,8 @@ Json asJson(const RunRecord& record)
     json["intersecting_pairs_end"] = summary.m_intersectingPairsEnd;
     json["intersecting_pairs_max"] = summary.m_intersectingPairsMax;
     json["intersecting_pairs_max_step"] = summary.m_intersectingPairsMaxStep;
-    json["self_intersecting_pairs_end"] = summary.m_selfPairsEnd;
-    json["self_intersecting_pairs_max"] = summary.m_selfPairsMax;
+    json["self_intersecting_pairs_end"] = record.m_countsClothPairs ? Json(summary.m_selfPairsEnd) : Json();
+    json["self_intersecting_pairs_max"] = record.m_countsClothPairs ? Json(summary.m_selfPairsMax) : Json();
     json["stretch_mean"] = summary.m_stretch.m_mean;
     json["stretch_max"] = summary.m_stretch.m_max;
     json["rest_speed_mm_s"] = 1000 * summary.m_restSpeed;
@@ -213,7 +213,9 @@ void addMeasures(std::string& table, const std::vector<RunSummary>& summaries)
     add("stretch, mean, end, %", [](Run run) { return text("%.2f", 100 * run.m_stretch.m_mean); });
     add("stretch, maximum, end, %", [](Run run) { return text("%.2f", 100 * run.m_stretch.m_max); });
     add("cloth pairs intersecting, end (maximum)",
-        [](Run run) { return count(run.m_selfPairsEnd) + " (" + count(run.m_selfPairsMax) + ")"; });
+        [](Run run) {
+            return run.m_countsClothPairs ? count(run.m_selfPairsEnd) + " (" + count(run.m_selfPairsMax) + ")" : kNone;
+        });
     add("NaN nodes", [](Run run) { return count(run.m_invalidNodes); });
     add("hash", [](Run run) { return hashText(run.m_hash); });
 }
@@ -266,12 +268,12 @@ std::string asCsv(const RunRecord& record, double dt)
     for (std::size_t i = 0; i < record.m_steps.size(); ++i)
     {
         const StepRecord& step = record.m_steps[i];
-        std::snprintf(line, sizeof line, "%zu,%.9g,%.6f,%.6f,%zu,%.9g,%.9g,%zu,%zu,%zu,%.9g,%zu,%zu", i + 1,
+        std::snprintf(line, sizeof line, "%zu,%.9g,%.6f,%.6f,%zu,%.9g,%.9g,%zu,%zu,%zu,%.9g,%zu,", i + 1,
                       static_cast<double>(i + 1) * dt, step.m_times.m_stepMs, step.m_times.m_collisionMs,
                       step.m_times.m_contacts, step.m_measure.m_penetrationMax, step.m_measure.m_gapMin,
                       step.m_measure.nodesBelow(), step.m_measure.m_intersectingPairs, step.m_measure.m_invalidNodes,
-                      step.m_speed, step.m_nodesThrough, step.m_selfPairs);
-        csv += line;
+                      step.m_speed, step.m_nodesThrough);
+        csv += line + (record.m_countsClothPairs ? count(step.m_selfPairs) : std::string());
         for (const NamedPart& part : stepParts())
             csv += "," + (hasParts(record) ? text("%.6f", step.m_times.m_parts.*part.m_ms) : std::string());
         csv += "\n";

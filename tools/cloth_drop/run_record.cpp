@@ -61,6 +61,7 @@ double restSpeedOf(const std::vector<StepRecord>& steps)
 RunSummary summarise(const RunRecord& record)
 {
     RunSummary summary;
+    summary.m_countsClothPairs = record.m_countsClothPairs;
     std::vector<double> steps, collisions, finding, depths;
     for (std::size_t i = 0; i < record.m_steps.size(); ++i)
     {

@@ -29,6 +29,7 @@ struct RunRecord
     double m_prepareMs = 0;
     std::size_t m_clothTriangles = 0, m_clothNodes = 0, m_obstacleTriangles = 0;
     double m_thickness = 0;
+    bool m_countsClothPairs = false;  // see countsClothPairs()
     std::vector<StepRecord> m_steps;
     std::vector<float> m_lastPositions;  // x y z per cloth node after the last step; a child's only where asked for
     bool m_capped = false;               // something ended the run before its last step: those done are there
@@ -56,6 +57,7 @@ struct RunSummary
     std::size_t m_intersectingPairsEnd = 0;      // after the last step
     std::size_t m_intersectingPairsMax = 0;      // after any step
     std::size_t m_intersectingPairsMaxStep = 0;  // the first step that had so many, from 1; 0: no step had any
+    bool m_countsClothPairs = false;             // see countsClothPairs()
     std::size_t m_selfPairsEnd = 0;              // after the last step
     std::size_t m_selfPairsMax = 0;              // after any step
     std::size_t m_invalidNodes = 0;              // most in any step

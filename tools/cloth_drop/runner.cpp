@@ -18,6 +18,7 @@ RunRecord startRecord(const Simulation& simulation, const DropScene& scene, cons
     record.m_clothNodes = sheets.vertexCount();
     record.m_obstacleTriangles = scene.m_obstacle.triangleCount();
     record.m_thickness = scene.m_thickness;
+    record.m_countsClothPairs = countsClothPairs(scene);
     return record;
 }
 }  // namespace
@@ -47,7 +48,7 @@ bool runSimulation(Simulation& simulation, const DropScene& scene, int steps, co
         step.m_speed = rmsSpeed(lastFrame.m_positions, positions, scene.m_dt);
         lastFrame.m_positions = positions;
         step.m_measure = meter.measure(lastFrame.m_positions.data());
-        step.m_selfPairs = self.find(positions).size();
+        if (record.m_countsClothPairs) step.m_selfPairs = self.find(positions).size();
         step.m_stretch = stretch.measure(positions);
         crossings.follow(positions);
         step.m_nodesThrough = crossings.nodes();

@@ -182,7 +182,8 @@ ClothRows& ClothMeetings::find(const NodesOf& nodesOf)
     {
         const std::size_t own = index - m_set.firstNode(std::size_t(&member - m_members.data()));
         float *start = m_set.start() + 3 * index, *end = m_set.end() + 3 * index;
-        writePosition(member.m_nodes ? vectorOf(member.m_nodes->start(own)) : node.m_x, start);
+        const btVector3& first = member.m_isStepped ? node.m_q : node.m_x;
+        writePosition(member.m_nodes ? vectorOf(member.m_nodes->start(own)) : first, start);
         writePosition(member.m_nodes ? vectorOf(member.m_nodes->end(own)) : node.m_x, end);
     };
     forNodes(write);
