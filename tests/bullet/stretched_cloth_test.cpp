@@ -346,4 +346,29 @@ TEST(Stretch, ABodyWithoutLinksAndFacesHasItsOwnSize)
     EXPECT_EQ(stretch.m_start, 1);
     EXPECT_EQ(stretch.m_end, 1);
 }
+TEST(StretchedCloth, LimitsOfZeroLeaveOutClothThatComesNear)
+{
+    for (const bool ofContacts : {false, true})
+    {
+        Settings settings = hostSettings();
+        (ofContacts ? settings.m_contactLimit : settings.m_candidateLimit) = 0;
+        Plugin plugin(settings);
+        MeshShape box(makeBox(2, 0.2f, 2));
+        DropWorld world(&plugin);
+        world.addObstacle(box.shape());
+        ClothSpec spec;
+        spec.m_centre = btVector3(0, btScalar(0.4), 0);
+        world.addCloth(spec);
+        world.step();
+        EXPECT_EQ(plugin.statistics().m_status, std::uint32_t(kStepGood)) << ofContacts;
+        std::uint32_t status = 0;
+        for (int step = 0; step < 40; ++step)
+        {
+            world.step();
+            status |= plugin.statistics().m_status;
+            EXPECT_EQ(plugin.statistics().m_contacts, 0u) << ofContacts;
+        }
+        EXPECT_NE(status & kStepClothsLeftOut, 0u) << ofContacts;
+    }
+}
 }  // namespace drape::test
