@@ -1,5 +1,6 @@
 // The order of a step: detection, the solver, and what follows them.
 #include <algorithm>
+#include <atomic>
 
 #include "bullet_plugin/adapter/motion/bounds_guard.h"
 #include "bullet_plugin/adapter/pairs/eligibility.h"
@@ -159,6 +160,21 @@ void SoftBodySolver::Work::guardMeetings()
     m_state.m_statistics.m_status |= kStepMotionHeldBack;
 }
 
+// Writes the results to the bodies. Reports nodes whose positions are not valid: those that the detection left out,
+// those of bodies without a pair, and those that the solver lost.
+void SoftBodySolver::Work::endSubsteps()
+{
+    std::atomic<std::size_t> invalid{0};
+    forBodies(
+        m_ends.size(), m_state.threads(), [&](std::size_t i) { return m_ends[i].second->count(); },
+        [&](std::size_t i, ThreadTeam* threads)
+        { invalid += SubstepBody::end(*m_ends[i].second, *m_ends[i].first, threads); });
+    if (invalid == 0) return;
+    StepStatistics& statistics = m_state.m_statistics;
+    statistics.m_status |= kStepInvalidNodes;
+    statistics.m_invalidNodes = std::max(statistics.m_invalidNodes, invalid.load());
+}
+
 // Solves the bodies that the device has not solved behind the detection, and writes all results back.
 void SoftBodySolver::Work::solveBodies()
 {
@@ -180,9 +196,7 @@ void SoftBodySolver::Work::solveBodies()
         linksMs += links->ms();
     parts.m_solveMs = watch.lapMs() - linksMs;
     parts.m_bulletMs += linksMs;
-    forBodies(
-        m_ends.size(), m_state.threads(), [&](std::size_t i) { return m_ends[i].second->count(); },
-        [&](std::size_t i, ThreadTeam* threads) { SubstepBody::end(*m_ends[i].second, *m_ends[i].first, threads); });
+    endSubsteps();
     for (int i = 0; i < m_bodies.size(); ++i)
     {
         btSoftBody& body = *m_bodies[i];

@@ -86,6 +86,7 @@ struct SoftBodySolver::Work
     void leaveToBullet();
     void chooseStage();
     void detect();
+    void endSubsteps();
     void solveBodies();
     void closeOffPath(const std::vector<BodyContacts*>& bodies);
     ClothRows* findMeetings();

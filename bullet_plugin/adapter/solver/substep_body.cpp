@@ -275,17 +275,22 @@ void SubstepBody::addRows(const btSoftBody& body, const SolverNodes& nodes, Rigi
     bodies.addRows(body, nodes, m_rigidRows);
 }
 
-void SubstepBody::end(const SolverNodes& nodes, btSoftBody& body, ThreadTeam* threads)
+std::size_t SubstepBody::end(const SolverNodes& nodes, btSoftBody& body, ThreadTeam* threads)
 {
+    std::atomic<std::size_t> invalid{0};
     const auto write = [&](std::size_t first, std::size_t last)
     {
+        std::size_t count = 0;
         for (std::size_t i = first; i < last; ++i)
         {
             btSoftBody::Node& node = body.m_nodes[static_cast<int>(i)];
             writeNode(nodes, i, node);
             node.m_f.setZero();
+            count += !positionIsValid(vec3Of(node.m_x));
         }
+        if (count > 0) invalid += count;
     };
     forRanges(nodes.count(), threads, write);
+    return invalid;
 }
 }  // namespace drape

@@ -71,8 +71,9 @@ public:
     Substeps& substeps() { return m_substeps; }
     // Returns the rows of the last addRows(); null if there are none.
     RigidRows* rigidRows() { return m_rigidRows.empty() ? nullptr : &m_rigidRows; }
-    // Gives the body the solver's result. threads: null for the caller alone.
-    static void end(const SolverNodes& nodes, btSoftBody& body, ThreadTeam* threads);
+    // Gives the body the solver's result. Returns the number of its nodes whose positions are not valid. threads: null
+    // for the caller alone.
+    static std::size_t end(const SolverNodes& nodes, btSoftBody& body, ThreadTeam* threads);
 
 private:
     static constexpr int kLeastSubsteps = 2;

@@ -1,14 +1,13 @@
 #include "link_sweep.h"
 
 #include <algorithm>
-#include <cfloat>
 #include <cstring>
-#include <limits>
 #include <numeric>
 #include <tuple>
 
 #include "bullet_plugin/core/solver/topology/colouring.h"
 #include "bullet_plugin/core/threads/ranges.h"
+#include "kernels/lib/solver/link_row.h"
 
 namespace drape
 {
@@ -162,7 +161,7 @@ void LinkSweep::visitGroup(std::size_t group, SolverNode* nodes) const
         const Lanes length2 = apart[0] * apart[0] + apart[1] * apart[1] + apart[2] * apart[2];
         const Lanes rest2 = load(block.m_restSquared), sum = rest2 + length2;
         // Links do what visitLink() of kernels/lib/solver/link_row.h does.
-        const auto acts = (sum > FLT_EPSILON) & (sum < std::numeric_limits<float>::infinity());
+        const auto acts = (sum > DRAPE_LINK_LENGTH2) & (sum < DRAPE_LINK_MOST_LENGTH2);
         const Lanes none = {0, 0, 0, 0};
         const Lanes share = load(block.m_strength) * (rest2 - length2) / (acts ? sum : Lanes{1, 1, 1, 1});
         const Lanes push = acts ? share : none;

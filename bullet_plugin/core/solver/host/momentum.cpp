@@ -84,7 +84,7 @@ struct Sums
 };
 
 // Adds up the nodes; what they lack is the momentum at the start and what forces gave, less the momentum at the end.
-// Returns false if a node is fixed.
+// Returns false if a node is fixed, or not valid: its momentum is not for others.
 bool sumUp(const SolverNodes& nodes, const Substeps& substeps, const Kept& kept, Sums& sums)
 {
     const double time = double(substeps.time()), given = kept.m_received * time;
@@ -96,7 +96,8 @@ bool sumUp(const SolverNodes& nodes, const Substeps& substeps, const Kept& kept,
     for (std::size_t i = 0; i < nodes.count(); ++i)
     {
         const SolverNode& node = nodes.nodes()[i];
-        if (!(node.m_inverseMass > 0)) return false;
+        const bool isValid = positionIsValid(vec3Add(nodes.start(i), node.m_displacement));
+        if (!(node.m_inverseMass > 0) || !isValid) return false;
         const double mass = 1 / double(node.m_inverseMass);
         const Vec3d force = wide(substeps.accelerations()[i]), velocity = wide(nodes.velocity(i));
         const Vec3d start = wide(nodes.start(i)) - origin, moved = wide(node.m_displacement), end = start + moved;
