@@ -196,7 +196,7 @@ typedef struct SolveLayout
     DRAPE_UINT m_nodeCount, m_bucketCount, m_obstacleCount;
     // In the step's input. By node in the caller's order: paths, accelerations.
     DRAPE_UINT m_cloths, m_givenPaths, m_givenAccelerations, m_surfaces, m_regions, m_obstacles;
-    // In the working memory. m_order: by contact in the order of sweeps, its index in the list of contacts.
+    // These are in the working memory. m_order: by contact in the order of sweeps, its index in the list of contacts.
     DRAPE_UINT m_nodes, m_states, m_results;
     DRAPE_UINT m_buckets, m_progress, m_allowances, m_total;
     DRAPE_UINT m_paths, m_accelerations, m_sorted, m_order, m_acting, m_spans, m_marks;

@@ -69,7 +69,7 @@ void SoftBodySolver::processCollision(btSoftBody* body, btSoftBody* other)
 void SoftBodySolver::updateSoftBodies()
 {
     Stopwatch watch;
-    // Without a state Bullet's function does the same on this thread.
+    // Bullet's function does the same on this thread if there is no state.
     if (!m_work) return btDefaultSoftBodySolver::updateSoftBodies();
     const auto isOnHost = [this](const btSoftBody& body)
     { return body.isActive() && !m_state->m_kept.isOnDevice(body); };
