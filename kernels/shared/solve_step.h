@@ -194,12 +194,12 @@ typedef struct SolveResult
 typedef struct SolveLayout
 {
     DRAPE_UINT m_nodeCount, m_bucketCount, m_obstacleCount;
-    // In the step's input. By node in the caller's order: paths, accelerations.
-    DRAPE_UINT m_cloths, m_givenPaths, m_givenAccelerations, m_surfaces, m_regions, m_obstacles;
+    // In the step's input. By node in the caller's order: paths, accelerations, supports.
+    DRAPE_UINT m_cloths, m_givenPaths, m_givenAccelerations, m_givenSupports, m_surfaces, m_regions, m_obstacles;
     // These are in the working memory. m_order: by contact in the order of sweeps, its index in the list of contacts.
     DRAPE_UINT m_nodes, m_states, m_results;
     DRAPE_UINT m_buckets, m_progress, m_allowances, m_total;
-    DRAPE_UINT m_paths, m_accelerations, m_sorted, m_order, m_acting, m_spans, m_marks;
+    DRAPE_UINT m_paths, m_accelerations, m_supports, m_sorted, m_order, m_acting, m_spans, m_marks;
     // In the topology. m_faceLists: by node, the position of its faces; then the last one's end. m_faces: three nodes
     // each. m_nodeOrder: by node, its index in the caller's order.
     DRAPE_UINT m_links, m_linkBatches, m_groups, m_levelGroups, m_faceLists, m_facesOfNode, m_faces, m_nodeOrder,

@@ -34,11 +34,16 @@ typedef struct NodePath
     float m_freeMass;     // 1/kg, the inverse mass as links see it
 } NodePath;
 
+// Values of NodeState::m_shifted: the node was moved since its displacement was remembered; a contact pushed it in the
+// step.
+#define DRAPE_NODE_SHIFTED 1u
+#define DRAPE_NODE_PUSHED 2u
+
 // Properties of a node beside its displacement.
 typedef struct NodeState
 {
     Vec3 m_velocity;       // m/s
-    DRAPE_UINT m_shifted;  // true if it was moved since its displacement was remembered
+    DRAPE_UINT m_shifted;  // DRAPE_NODE_SHIFTED, DRAPE_NODE_PUSHED
     Vec3 m_before;         // m, the displacement that was remembered
     DRAPE_UINT m_isFar;    // working memory of the motion limit
 } NodeState;

@@ -2,6 +2,7 @@
 //
 // Work-items share the nodes of each cloth: as many of them as launch.m_lanes.
 #include "../lib/geometry/vec3.h"
+#include "../lib/solver/solver_node.h"
 #include "solver_bindings.h"
 
 typedef struct Predicted
@@ -20,7 +21,8 @@ static Predicted predict(__global const KeptCloth* cloth, const KeptNode* node)
     const Vec3 moved = vec3Scale(velocity, cloth->m_time);
     Predicted predicted;
     predicted.m_acceleration = vec3Scale(vec3Sub(velocity, before), cloth->m_perSecond);
-    const Vec3 shift = vec3Scale(predicted.m_acceleration, cloth->m_shift);
+    const Vec3 shift =
+        vec3AddScaled(vec3Scale(predicted.m_acceleration, cloth->m_shift), node->m_support, cloth->m_supportShift);
     predicted.m_free = vec3Add(node->m_position, moved);
     predicted.m_end = vec3Add(predicted.m_free, shift);
     predicted.m_vector = vec3Add(moved, shift);
@@ -55,6 +57,7 @@ __kernel void takeKeptPaths(DRAPE_SOLVE_KEPT)
     __global const uint* nodeOrder = (__global const uint*)(topology + layout.m_nodeOrder) + cloth->m_solved;
     __global NodePath* paths = (__global NodePath*)(work + layout.m_paths) + cloth->m_solved;
     __global Vec3* accelerations = (__global Vec3*)(work + layout.m_accelerations) + cloth->m_solved;
+    __global Vec3* supports = (__global Vec3*)(work + layout.m_supports) + cloth->m_solved;
     for (uint i = get_global_id(0) % launch.m_lanes; i < cloth->m_count; i += launch.m_lanes)
     {
         const KeptNode node = kept[cloth->m_before + (nodeOrder[i] - cloth->m_solved)];
@@ -65,6 +68,7 @@ __kernel void takeKeptPaths(DRAPE_SOLVE_KEPT)
         path.m_inverseMass = path.m_freeMass = node.m_inverseMass;
         paths[i] = path;
         accelerations[i] = predicted.m_acceleration;
+        supports[i] = node.m_support;
     }
 }
 
@@ -94,6 +98,7 @@ __kernel void keepNodes(DRAPE_SOLVE_KEPT, DRAPE_UPDATES(KeptBounds, bounds))
     __global const KeptCloth* cloth = cloths + index;
     __global const uint* nodeOrder = (__global const uint*)(topology + layout.m_nodeOrder) + cloth->m_solved;
     __global const NodePath* paths = (__global const NodePath*)(work + layout.m_paths) + cloth->m_solved;
+    __global const Vec3* accelerations = (__global const Vec3*)(work + layout.m_accelerations) + cloth->m_solved;
     __global const SolverNode* ends = (__global const SolverNode*)(work + layout.m_nodes) + cloth->m_solved;
     __global const NodeState* states = (__global const NodeState*)(work + layout.m_states) + cloth->m_solved;
     Bounds all;
@@ -107,12 +112,15 @@ __kernel void keepNodes(DRAPE_SOLVE_KEPT, DRAPE_UPDATES(KeptBounds, bounds))
     {
         const NodePath path = paths[i];
         const Vec3 displacement = ends[i].m_displacement, off = vec3Sub(displacement, path.m_vector);
+        const uint at = nodeOrder[i] - cloth->m_solved;
+        const Vec3 before = kept[cloth->m_before + at].m_velocity;
         KeptNode node;
         node.m_position = vec3Add(path.m_start, displacement);
         node.m_inverseMass = path.m_freeMass;
         node.m_velocity = states[i].m_velocity;
-        node.m_unused = 0.0f;
-        kept[cloth->m_after + (nodeOrder[i] - cloth->m_solved)] = node;
+        node.m_support = nodeSupport(states + i, before, accelerations[i], cloth->m_perSecond, cloth->m_leastThickness);
+        node.m_unused = node.m_unusedToo = 0.0f;
+        kept[cloth->m_after + at] = node;
         const Predicted predicted = predict(cloth, &node);
         addTo(&all, 0, node.m_position);
         addTo(&all, 1, predicted.m_free);

@@ -43,11 +43,13 @@ __kernel void takePaths(DRAPE_ORDER_CONTACTS)
 {
     __global const NodePath* given = (__global const NodePath*)(input + layout.m_givenPaths);
     __global const Vec3* accelerations = (__global const Vec3*)(input + layout.m_givenAccelerations);
+    __global const Vec3* supports = (__global const Vec3*)(input + layout.m_givenSupports);
     __global const uint* nodeOrder = (__global const uint*)(topology + layout.m_nodeOrder);
     for (uint i = get_global_id(0); i < layout.m_nodeCount; i += get_global_size(0))
     {
         ((__global NodePath*)(work + layout.m_paths))[i] = given[nodeOrder[i]];
         ((__global Vec3*)(work + layout.m_accelerations))[i] = accelerations[nodeOrder[i]];
+        ((__global Vec3*)(work + layout.m_supports))[i] = supports[nodeOrder[i]];
     }
 }
 

@@ -33,6 +33,7 @@ struct Scene
     btScalar m_turn = 0;                     // rad, about y
     btScalar m_friction = btScalar(0.5);
     int m_levels = 3;  // subdivisions of the sphere
+    btScalar m_margin = kMargin;
     int m_steps = kSteps;
     std::function<void(std::vector<btSoftBody*>&, int)> m_beforeStep = nullptr;  // gets the cloths and the step
 };
@@ -43,11 +44,14 @@ Trajectory run(const Scene& scene, Settings settings, SolverPlace place)
     settings.m_solverPlace = place;
     Plugin plugin(settings);
     MeshShape shape(makeSphere(0.4f, scene.m_levels));
+    shape.shape().setMargin(scene.m_margin);
     DropWorld world(&plugin);
     btRigidBody& obstacle = world.addKinematic(shape.shape());
     obstacle.setFriction(scene.m_friction);
     std::vector<btSoftBody*> cloths;
     scene.m_addCloths(world, cloths);
+    for (btSoftBody* cloth : cloths)
+        cloth->getCollisionShape()->setMargin(scene.m_margin);
     Trajectory trajectory;
     btTransform pose = btTransform::getIdentity();
     for (int step = 0; step < scene.m_steps; ++step)
@@ -101,6 +105,15 @@ TEST_P(DeviceSolverTest, AClothDropsAsOnTheHost)
 {
     EXPECT_EQ(expectSame({clothsOf(1, 17, 0)}), std::size_t(kSteps));
     EXPECT_EQ(expectSame({clothsOf(1, 17, 20)}), std::size_t(kSteps));
+}
+
+// Paths of thin cloth follow the surface on which it lies.
+TEST_P(DeviceSolverTest, ThinClothSlidesAsOnTheHost)
+{
+    Scene scene = {clothsOf(1, 17, 0)};
+    scene.m_margin = btScalar(0.0007);
+    scene.m_friction = 0;
+    EXPECT_GT(expectSame(scene), std::size_t(kSteps / 2));
 }
 
 // Cloth that comes apart may exceed the limits of ordinary motion. All back ends agree on whether it does.

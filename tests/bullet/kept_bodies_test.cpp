@@ -113,6 +113,19 @@ TEST_P(KeptBodyTest, ClothComesToRestAsAtHome)
     EXPECT_GT(expectSame({clothOf(17), nullptr, nullptr}), kSteps / 2);
 }
 
+// Its paths follow the surface on which it lies, which the device and the host remember from step to step.
+TEST_P(KeptBodyTest, ThinClothMovesAsAtHome)
+{
+    Scene scene = {clothOf(17), nullptr, nullptr};
+    scene.m_add = [](DropWorld& world, btSoftBody& cloth)
+    {
+        world.world().getCollisionObjectArray()[0]->getCollisionShape()->setMargin(btScalar(0.0007));
+        cloth.getCollisionShape()->setMargin(btScalar(0.0007));
+        cloth.m_cfg.kDP = btScalar(0.2);
+    };
+    EXPECT_GT(expectSame(scene), kSteps / 12);
+}
+
 TEST_P(KeptBodyTest, LargeClothMovesAsAtHome)
 {
     EXPECT_GT(expectSame({clothOf(60), nullptr, nullptr}), kSteps / 4);

@@ -91,7 +91,9 @@ TEST_F(Stock, AMeshThatTurnsDynamicAndBackChangesItsOwnerBothTimes)
     expectReason(cloth, object, "dynamic");
     expectBulletHasIt(cloth, 3);
     object.setCollisionFlags(btCollisionObject::CF_STATIC_OBJECT);
-    m_world.step(3);
+    // Bullet's algorithm threw the cloth.
+    for (int i = 0; i < 30 && m_plugin.statistics().m_contacts == 0; ++i)
+        m_world.step();
     EXPECT_GT(m_plugin.statistics().m_contacts, 0u);
 }
 

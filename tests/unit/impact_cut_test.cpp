@@ -151,6 +151,42 @@ TEST(ImpactCut, ANodeThatStartsTooNearStaysAtItsStart)
     expectCut(nodes, 0, 1);
 }
 
+// Friction takes its coefficient times the velocity towards the plane from that along it. A second plane takes more.
+TEST(ImpactCut, TheVelocityAlongThePlaneIsGivenBackLessFriction)
+{
+    for (const float friction : {0.0f, 0.25f, 4.0f})
+    {
+        SolverNodes nodes = fallingNodes(2);
+        nodes.setPath(0, vec3(0, 1, 0), vec3(3, -2, 0), vec3(3 * kPerSecond, -2 * kPerSecond, 0), 1);
+        SolverContact contact = planeContact({0}, 0);
+        contact.m_friction = friction;
+        std::vector<Vec3> slides;
+        EXPECT_TRUE(cutAtImpacts(nodes, {contact}, Cut::EachNode, kPerSecond, &slides));
+        ASSERT_EQ(slides.size(), nodes.count());
+        const float lost = 1 - contact.m_time * (1 - kStandOff);  // share of the path
+        const float along = lost * kPerSecond * std::max(0.0f, 3 - 2 * friction);
+        EXPECT_NEAR(slides[0].x, along, 1e-3f) << friction;
+        EXPECT_NEAR(slides[0].y, 0, 1e-3f);
+        expectNear(slides[1], vec3(0, 0, 0));
+        SolverContact wall = planeContact({0}, 0);
+        wall.m_plane.m_normal = vec3(-1, 0, 0);
+        wall.m_friction = 0;
+        nodes.setEnd(0, nodes.displacement(0), nodes.velocity(0));
+        EXPECT_TRUE(cutAtImpacts(nodes, {wall}, Cut::EachNode, kPerSecond, &slides));
+        EXPECT_NEAR(slides[0].x, 0, 1e-3f);
+    }
+}
+
+TEST(ImpactCut, AHeldNodeGetsNoVelocityAlongThePlane)
+{
+    SolverNodes nodes = fallingNodes(1);
+    nodes.setPath(0, vec3(0, 1, 0), vec3(3, -2, 0), vec3(0, 0, 0), 1);
+    std::vector<Vec3> slides;
+    const SolverContact near = planeContact({0}, 1 - kStandOff / 2);
+    EXPECT_TRUE(cutAtImpacts(nodes, {near}, Cut::EachNode, kPerSecond, &slides));
+    expectNear(slides[0], vec3(0, 0, 0));
+}
+
 // The plane rose by half a metre, as a body or by its vertices: the path ends where the plane carries it.
 TEST(ImpactCut, APathEndsWhereAMovingObstacleCarriesIt)
 {

@@ -101,7 +101,8 @@ TEST(Substeps, AFreeNodeEndsAtTheEndOfItsPath)
         nodes.setPath(0, start, way, vec3(0, 0, 0), 1);
         Substeps substeps;
         substeps.links().build(1, 1, {});
-        substeps.prepare(1.0f / 60, count, 0, accelerations);
+        const std::vector<Vec3> unsupported(accelerations.size(), vec3(0, 0, 0));
+        substeps.prepare(1.0f / 60, count, 0, accelerations, unsupported);
         substeps.run(nodes, nullptr);
         expectNear(nodes.displacement(0), way, 1e-7f);
         expectEqual(nodes.position(0), vec3Add(start, nodes.displacement(0)));
@@ -121,7 +122,7 @@ TEST(Substeps, DampingKeepsItsShareOfTheVelocity)
         nodes.setPath(0, none[0], vec3(1, 0, 0), none[0], 1);
         Substeps substeps;
         substeps.links().build(1, 1, {});
-        substeps.prepare(0.5f, count, 0.25f, none);
+        substeps.prepare(0.5f, count, 0.25f, none, none);
         substeps.run(nodes, nullptr);
         EXPECT_NEAR(nodes.velocity(0).x, 1.5f, 1e-6f) << count << " substeps";
     }
@@ -138,7 +139,7 @@ TEST(Substeps, CorrectionsBecomeVelocity)
         nodes.setPath(i, none[0], way, none[0], 1);
     Substeps substeps;
     substeps.links().build(2, 1, {});
-    substeps.prepare(0.5f, 2, 0, none);
+    substeps.prepare(0.5f, 2, 0, none, none);
     substeps.begin(nodes, nullptr);
     substeps.advance(nodes, nullptr);
     expectEqual(nodes.displacement(0), vec3(0, -0.5f, 0));
@@ -171,7 +172,8 @@ TEST(Momentum, ForcesAndDampingChangeIt)
         }
         Substeps substeps;
         substeps.links().build(nodes.count(), 1, {});
-        substeps.prepare(1.0f / 60, count, 0, accelerations);
+        const std::vector<Vec3> unsupported(accelerations.size(), vec3(0, 0, 0));
+        substeps.prepare(1.0f / 60, count, 0, accelerations, unsupported);
         substeps.run(nodes, nullptr);
         std::vector<Vec3> before;
         for (std::size_t i = 0; i < nodes.count(); ++i)
@@ -197,7 +199,7 @@ TEST(Momentum, LostMomentumComesBack)
         nodes.setPath(i, randomVector(1, random), randomVector(0.05f, random), none[i], random.uniform(0.5f, 2));
     Substeps substeps;
     substeps.links().build(nodes.count(), 1, {});
-    substeps.prepare(1.0f / 60, 2, 0, none);
+    substeps.prepare(1.0f / 60, 2, 0, none, none);
     substeps.run(nodes, nullptr);
     std::vector<Vec3> before;
     for (std::size_t i = 0; i < nodes.count(); ++i)
@@ -237,7 +239,8 @@ TEST(Substeps, GiveTheSameBitsOnAnyNumberOfThreads)
         }
         Substeps substeps;
         ASSERT_NO_FATAL_FAILURE(linkNeighbours(nodes, places, substeps.links()));
-        substeps.prepare(1.0f / 60, 5, 0.1f, accelerations);
+        const std::vector<Vec3> unsupported(accelerations.size(), vec3(0, 0, 0));
+        substeps.prepare(1.0f / 60, 5, 0.1f, accelerations, unsupported);
         ThreadTeam team(std::max(1u, threads));
         substeps.run(nodes, threads == 0 ? nullptr : &team);
         std::vector<float> found;

@@ -110,7 +110,7 @@ private:
     void receive(const ContactList& contacts, Detection detection);
     std::vector<SolverContact> impactsOf(const BodyContacts& body) const;
     void reportPassed();
-    bool cutAtImpactsOf(BodyContacts& body, Cut cut);
+    bool cutAtImpactsOf(BodyContacts& body, Cut cut, std::vector<Vec3>* slides);
     bool cutPaths();
     bool cutOffPath(Cut cut);
     BodyContacts* bodyOf(MeshId cloth);

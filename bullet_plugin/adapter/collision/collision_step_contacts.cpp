@@ -130,18 +130,24 @@ std::vector<SolverContact> CollisionStep::impactsOf(const BodyContacts& body) co
     return impacts;
 }
 
-bool CollisionStep::cutAtImpactsOf(BodyContacts& body, Cut cut)
+bool CollisionStep::cutAtImpactsOf(BodyContacts& body, Cut cut, std::vector<Vec3>* slides)
 {
-    if (!cutAtImpacts(body.nodes(), impactsOf(body), cut, body.perSecond())) return false;
+    if (!cutAtImpacts(body.nodes(), impactsOf(body), cut, body.perSecond(), slides)) return false;
     writeShifted(body.nodes(), *body.m_body);
     return true;
 }
 
+// Thin cloth meets surfaces in most steps and slides on; thicker cloth stops where it meets one.
 bool CollisionStep::cutPaths()
 {
     bool any = false;
     for (BodyContacts& body : m_bodies)
-        any = cutAtImpactsOf(body, Cut::EachNode) || any;
+    {
+        const btSoftBody& cloth = *body.m_body;
+        const float way = float(cloth.m_worldInfo->m_gravity.length() * cloth.m_sst.sdt * cloth.m_sst.sdt);
+        const bool isThin = way > DRAPE_THIN_SHARE * body.m_contacts.m_leastThickness;
+        any = cutAtImpactsOf(body, Cut::EachNode, isThin ? &body.m_contacts.m_slides : nullptr) || any;
+    }
     return any;
 }
 
@@ -170,7 +176,7 @@ bool CollisionStep::cutOffPath(Cut cut)
     bool any = false;
     for (std::size_t i = 0; i < m_bodies.size(); ++i)
     {
-        if (!m_bodies[i].m_isOffPath || !cutAtImpactsOf(m_bodies[i], cut)) continue;
+        if (!m_bodies[i].m_isOffPath || !cutAtImpactsOf(m_bodies[i], cut, nullptr)) continue;
         m_mirrors[i]->watch(true);
         any = true;
     }

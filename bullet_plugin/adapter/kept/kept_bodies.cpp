@@ -31,13 +31,15 @@ KeptStep stepOver(const btSoftBody& body, KeptId id)
     step.m_time = float(body.m_sst.sdt);
     step.m_perSecond = float(body.m_sst.isdt);
     step.m_shift = float(SubstepBody::pathShift(body));
+    step.m_supportShift = float(SubstepBody::supportShift(body));
     return step;
 }
 
 bool isSameStep(const KeptStep& a, const KeptStep& b)
 {
     return a.m_gravity.x == b.m_gravity.x && a.m_gravity.y == b.m_gravity.y && a.m_gravity.z == b.m_gravity.z &&
-           a.m_time == b.m_time && a.m_perSecond == b.m_perSecond && a.m_shift == b.m_shift;
+           a.m_time == b.m_time && a.m_perSecond == b.m_perSecond && a.m_shift == b.m_shift &&
+           a.m_supportShift == b.m_supportShift;
 }
 
 // Adds the normals of faces to those of their nodes, as Bullet does.
@@ -302,6 +304,9 @@ void KeptBodies::bringToHost(btSoftBody& body)
     const KeptNode* const nodes = read(kept);
     kept.m_isOnDevice = kept.m_isBegun = false;
     if (!nodes) return;
+    kept.m_supports.resize(kept.m_count);
+    for (std::size_t i = 0; i < kept.m_count; ++i)
+        kept.m_supports[i] = nodes[i].m_support;
     std::size_t pin = 0;
     for (int i = 0; i < countOf(body, kept.m_count); ++i)
     {
@@ -324,7 +329,15 @@ bool KeptBodies::hadPair(const btSoftBody& body) const
     return kept && kept->m_hadPair;
 }
 
-void KeptBodies::store(btSoftBody& body, Kept& kept)
+void KeptBodies::giveSupports(const btSoftBody& body, SubstepBody* substeps)
+{
+    Kept* const kept = find(body);
+    if (!kept || kept->m_supports.empty()) return;
+    if (substeps) substeps->setSupports(kept->m_supports);
+    kept->m_supports.clear();
+}
+
+void KeptBodies::store(btSoftBody& body, Kept& kept, const SubstepBody* substeps)
 {
     if (kept.m_count != static_cast<std::size_t>(body.m_nodes.size()))
     {
@@ -333,12 +346,14 @@ void KeptBodies::store(btSoftBody& body, Kept& kept)
         kept.m_id = stage()->kept().add(kept.m_count);
     }
     std::vector<KeptNode> nodes(kept.m_count);
+    const bool isSupported = substeps && substeps->isSupported() && substeps->supports().size() == nodes.size();
     kept.m_pins.clear();
     kept.m_pinnedAt.clear();
     for (std::size_t i = 0; i < nodes.size(); ++i)
     {
         const btSoftBody::Node& node = body.m_nodes[static_cast<int>(i)];
-        nodes[i] = {vec3Of(node.m_x), float(node.m_im), vec3Of(node.m_v), 0};
+        const Vec3 support = isSupported ? substeps->supports()[i] : vec3(0, 0, 0);
+        nodes[i] = {vec3Of(node.m_x), float(node.m_im), vec3Of(node.m_v), 0, support, 0};
         if (node.m_im > 0) continue;
         kept.m_pins.push_back(static_cast<int>(i));
         kept.m_pinnedAt.push_back(node.m_x);
@@ -346,11 +361,12 @@ void KeptBodies::store(btSoftBody& body, Kept& kept)
     kept.m_faces = body.m_faces.size();
     kept.m_links = body.m_links.size();
     kept.m_step = stepOver(body, kept.m_id);
-    stage()->kept().write(kept.m_id, nodes, boxesAround(body, kept.m_step));
+    stage()->kept().write(kept.m_id, nodes, boxesAround(body, kept.m_step, nodes));
     kept.m_isOnDevice = true;
 }
 
-void KeptBodies::endStep(btSoftBody& body, const btSoftBodySolver* bulletSolver, bool hasPair)
+void KeptBodies::endStep(btSoftBody& body, const btSoftBodySolver* bulletSolver, bool hasPair,
+                         const SubstepBody* substeps)
 {
     Kept* const kept = find(body);
     if (!kept) return;
@@ -363,7 +379,7 @@ void KeptBodies::endStep(btSoftBody& body, const btSoftBodySolver* bulletSolver,
     kept->m_solver = bulletSolver;
     kept->m_hadPair = hasPair;
     // The next step would bring a free body to the host.
-    if (!m_isRetired && !kept->m_isOnDevice && (hasPair || anyPinned(body))) store(body, *kept);
+    if (!m_isRetired && !kept->m_isOnDevice && (hasPair || anyPinned(body))) store(body, *kept, substeps);
     kept->m_isBegun = false;
 }
 }  // namespace drape

@@ -21,6 +21,7 @@
 namespace drape
 {
 class PluginState;
+class SubstepBody;
 class SolveStage;
 
 class KeptBodies
@@ -67,8 +68,12 @@ public:
     void bringToHost(btSoftBody& body);
     // Returns whether a solver's step had contacts for the body when it was last on the device.
     bool hadPair(const btSoftBody& body) const;
+    // Gives the supports (nodeSupport()) of a body that bringToHost() brought since, once. substeps: null if Bullet
+    // solves the links.
+    void giveSupports(const btSoftBody& body, SubstepBody* substeps);
     // Ends a step: bodies on the host are stored on the device. hasPair: the step looked for contacts of the body.
-    void endStep(btSoftBody& body, const btSoftBodySolver* solver, bool hasPair);
+    // substeps: the body's; null if the core does not solve it.
+    void endStep(btSoftBody& body, const btSoftBodySolver* solver, bool hasPair, const SubstepBody* substeps);
 
 private:
     struct Kept
@@ -84,8 +89,9 @@ private:
         KeptStep m_step;
         std::vector<int> m_pins;
         std::vector<btVector3> m_pinnedAt;
-        bool m_isReading = false;   // a transfer was begun
-        bool m_isBringing = false;  // by beginBringing()
+        std::vector<Vec3> m_supports;  // by node, for giveSupports(); empty if there are none
+        bool m_isReading = false;      // a transfer was begun
+        bool m_isBringing = false;     // by beginBringing()
         std::size_t m_waitsBefore = 0;
     };
 
@@ -94,7 +100,7 @@ private:
     SolveStage* stage() const;
     void makeRoom(const btSoftBody& body, Kept& kept);
     void freeRoom(const Kept& kept);
-    void store(btSoftBody& body, Kept& kept);
+    void store(btSoftBody& body, Kept& kept, const SubstepBody* substeps);
     const KeptNode* read(Kept& kept);
     bool anyPinMoved(const btSoftBody& body, const Kept& kept) const;
 

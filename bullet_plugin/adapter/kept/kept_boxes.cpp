@@ -21,7 +21,7 @@ void add(KeptBoxes& boxes, int box, const btVector3& v)
 }
 }  // namespace
 
-KeptBoxes boxesAround(const btSoftBody& body, const KeptStep& step)
+KeptBoxes boxesAround(const btSoftBody& body, const KeptStep& step, const std::vector<KeptNode>& nodes)
 {
     KeptBoxes boxes;
     std::fill_n(&boxes.m_low[0][0], 3 * DRAPE_KEPT_BOXES, HUGE_VALF);
@@ -35,7 +35,8 @@ KeptBoxes boxesAround(const btSoftBody& body, const KeptStep& step)
         const btVector3 free = node.m_x + velocity * step.m_time;
         add(boxes, 0, node.m_x);
         add(boxes, 1, free);
-        add(boxes, 2, free + (velocity - node.m_v) * step.m_perSecond * step.m_shift);
+        const btVector3 support = vectorOf(nodes[static_cast<std::size_t>(i)].m_support);
+        add(boxes, 2, free + ((velocity - node.m_v) * step.m_perSecond * step.m_shift + support * step.m_supportShift));
     }
     return boxes;
 }

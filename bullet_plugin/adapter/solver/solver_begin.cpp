@@ -36,6 +36,7 @@ template <class Predict>
 void SoftBodySolver::Work::predictOne(btSoftBody& body, ThreadTeam* threads, const Predict& predict)
 {
     SubstepBody* const substeps = substepsAt(body);
+    m_state.m_kept.giveSupports(body, substeps);
     if (substeps) substeps->beforePrediction(body, threads);
     predict(body);
     if (substeps) substeps->afterPrediction(body, threads);

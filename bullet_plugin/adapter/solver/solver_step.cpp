@@ -26,8 +26,8 @@ std::size_t elementsOf(const StepStatistics& step)
 
 // Ends the body's step at its start, with the velocities that it would have without gravity. Used for cloth with
 // unknown contacts: a cloth at rest passes no resting obstacle. Allocates no memory. contacts: null if none are
-// known.
-void holdStill(btSoftBody& body, const BodyContacts* contacts)
+// known. substeps: null if Bullet solves the links.
+void holdStill(btSoftBody& body, const BodyContacts* contacts, const SubstepBody* substeps)
 {
     const std::size_t count = static_cast<std::size_t>(body.m_nodes.size());
     const SolverNodes* const nodes = contacts ? &contacts->nodes() : nullptr;
@@ -40,7 +40,10 @@ void holdStill(btSoftBody& body, const BodyContacts* contacts)
             node.m_v = vectorOf(nodes->pathVector(i)) * body.m_sst.isdt;
             node.m_q = vectorOf(nodes->start(i));
         }
-        if (node.m_im > 0) node.m_v -= fall;
+        if (substeps && substeps->isPredicted())
+            node.m_v = substeps->velocities()[i];
+        else if (node.m_im > 0)
+            node.m_v -= fall;
         node.m_x = node.m_q;
     }
 }
@@ -166,9 +169,9 @@ void SoftBodySolver::Work::endSubsteps()
 {
     std::atomic<std::size_t> invalid{0};
     forBodies(
-        m_ends.size(), m_state.threads(), [&](std::size_t i) { return m_ends[i].second->count(); },
+        m_ends.size(), m_state.threads(), [&](std::size_t i) { return m_ends[i].second->m_nodes.count(); },
         [&](std::size_t i, ThreadTeam* threads)
-        { invalid += SubstepBody::end(*m_ends[i].second, *m_ends[i].first, threads); });
+        { invalid += substepsOf(*m_ends[i].first)->end(*m_ends[i].second, *m_ends[i].first, threads); });
     if (invalid == 0) return;
     StepStatistics& statistics = m_state.m_statistics;
     statistics.m_status |= kStepInvalidNodes;
@@ -276,7 +279,7 @@ void SoftBodySolver::Work::endFailedStep()
         if (handlesSteppedCloth(m_state, body))
         {
             const BodyContacts* const contacts = m_detected ? contactsOf(body) : nullptr;
-            holdStill(body, contacts && !contacts->m_isOnDevice ? contacts : nullptr);
+            holdStill(body, contacts && !contacts->m_isOnDevice ? contacts : nullptr, substeps);
         }
         else
             drape::solveByBullet(body);

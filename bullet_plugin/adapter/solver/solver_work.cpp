@@ -70,7 +70,7 @@ void SoftBodySolver::Work::takeSubsteps(const Bodies& bodies)
         const KeptStep* const kept = m_state.m_kept.stepOf(body);
         SubstepBody& substeps = *substepsOf(body);
         ClothContacts& cloth = clothOf(body);
-        if (!kept) m_ends.emplace_back(&body, &cloth.m_nodes);
+        if (!kept) m_ends.emplace_back(&body, &cloth);
         if (cloth.m_isSolved) continue;
         substeps.addRows(body, cloth.m_nodes, m_rigidBodies);
         const bool isFree = !contactsOf(body) && !substeps.rigidRows();
@@ -153,7 +153,8 @@ std::size_t SoftBodySolver::Work::endKept(const Bodies& bodies)
     {
         if (!isSteppedBody(*bodies[i])) continue;
         kept += m_state.m_kept.isOnDevice(*bodies[i]);
-        m_state.m_kept.endStep(*bodies[i], &m_owner, contactsOf(*bodies[i]) != nullptr);
+        const SubstepBody* const substeps = substepsAt(*bodies[i]);
+        m_state.m_kept.endStep(*bodies[i], &m_owner, contactsOf(*bodies[i]) != nullptr, substeps);
     }
     return kept;
 }

@@ -147,18 +147,18 @@ struct SoftBodySolver::Work
     std::vector<std::unique_ptr<BulletLinks>> m_bulletLinks;
     std::vector<SolverCloth> m_free;
     RigidBodies m_rigidBodies;
-    std::vector<std::pair<btSoftBody*, const SolverNodes*>> m_ends;  // results to be written to the bodies
-    std::vector<unsigned char> m_solved;                             // by body: solved by Bullet or by its contacts
-    std::vector<btSoftBody*> m_taken;                                // bodies that Drape handles in this step
-    std::vector<const btSoftBody*> m_predicted;                      // in this step, sorted by address
-    bool m_listed = false;                                           // m_predicted is whole
-    bool m_seesReads = false;                                        // see seesReads(), in this step
-    bool m_detected = false;                                         // the paths of all bodies with a pair are recorded
-    bool m_begun = false;                                            // beginSubsteps() was called in this step
-    std::size_t m_onDevice = 0;                                      // cloths solved behind the detection
-    SolveStage* m_stage = nullptr;                                   // solves this step's cloths; null: the host does
-    std::size_t m_asleep = 0;                                        // cloths that are not among them
-    StepParts m_parts;                                               // parts of the running step, without its waits
+    std::vector<std::pair<btSoftBody*, ClothContacts*>> m_ends;  // results to be written to the bodies
+    std::vector<unsigned char> m_solved;                         // by body: solved by Bullet or by its contacts
+    std::vector<btSoftBody*> m_taken;                            // bodies that Drape handles in this step
+    std::vector<const btSoftBody*> m_predicted;                  // in this step, sorted by address
+    bool m_listed = false;                                       // m_predicted is whole
+    bool m_seesReads = false;                                    // see seesReads(), in this step
+    bool m_detected = false;                                     // the paths of all bodies with a pair are recorded
+    bool m_begun = false;                                        // beginSubsteps() was called in this step
+    std::size_t m_onDevice = 0;                                  // cloths solved behind the detection
+    SolveStage* m_stage = nullptr;                               // solves this step's cloths; null: the host does
+    std::size_t m_asleep = 0;                                    // cloths that are not among them
+    StepParts m_parts;                                           // parts of the running step, without its waits
     std::uint64_t m_failures;  // failures of the state that a step of this solver has reported
 };
 }  // namespace drape

@@ -71,6 +71,17 @@ btScalar SubstepBody::pathShift(const btSoftBody& body)
     return (share - 1) * body.m_sst.sdt * body.m_sst.sdt;
 }
 
+btScalar SubstepBody::supportShift(const btSoftBody& body)
+{
+    return btScalar(Substeps::pathShare(substepsOf(body))) * body.m_sst.sdt * body.m_sst.sdt;
+}
+
+void SubstepBody::setSupports(const std::vector<Vec3>& supports)
+{
+    m_isSupported = supports.size() == m_supports.size();
+    if (m_isSupported) m_supports = supports;
+}
+
 void SubstepBody::reserve(const btSoftBody& body)
 {
     m_isPredicted = m_isOnDevice = false;
@@ -79,6 +90,8 @@ void SubstepBody::reserve(const btSoftBody& body)
     if (count == 0) return;
     m_accelerations.resize(count);
     m_predictions.resize(count);
+    if (m_supports.size() != count) m_isSupported = false;
+    m_supports.resize(count);
     m_velocities.resize(count);  // last: where it has its size, the others have theirs
 }
 
@@ -96,7 +109,10 @@ void SubstepBody::beforePrediction(const btSoftBody& body, ThreadTeam* threads)
 void SubstepBody::afterPrediction(btSoftBody& body, ThreadTeam* threads)
 {
     if (!(body.m_sst.sdt > 0) || m_velocities.size() != nodeCount(body)) return;
-    const btScalar shift = pathShift(body), perSecond = body.m_sst.isdt;
+    const btScalar shift = pathShift(body), supportShift = SubstepBody::supportShift(body);
+    const btScalar perSecond = body.m_sst.isdt;
+    if (!m_isSupported) std::fill(m_supports.begin(), m_supports.end(), vec3(0, 0, 0));
+    m_isSupported = false;
     m_isPredicted = true;
     m_isOnDevice = false;
     const auto bring = [&](std::size_t first, std::size_t last)
@@ -106,8 +122,9 @@ void SubstepBody::afterPrediction(btSoftBody& body, ThreadTeam* threads)
             btSoftBody::Node& node = body.m_nodes[static_cast<int>(i)];
             const btVector3 acceleration = (node.m_v - m_velocities[i]) * perSecond;
             m_accelerations[i] = vec3Of(acceleration);
-            node.m_x += acceleration * shift;
-            m_predictions[i] = {node.m_x, node.m_v * body.m_sst.sdt + acceleration * shift};
+            const btVector3 moved = acceleration * shift + vectorOf(m_supports[i]) * supportShift;
+            node.m_x += moved;
+            m_predictions[i] = {node.m_x, node.m_v * body.m_sst.sdt + moved};
         }
     };
     forRanges(m_velocities.size(), threads, bring);
@@ -122,9 +139,10 @@ void SubstepBody::leave(btSoftBody& body)
 {
     m_isPredicted = false;
     changeOver();
-    const btScalar shift = pathShift(body);
+    const btScalar shift = pathShift(body), supportShift = SubstepBody::supportShift(body);
     for (std::size_t i = 0; fits(body) && i < m_accelerations.size(); ++i)
-        body.m_nodes[static_cast<int>(i)].m_x -= vectorOf(m_accelerations[i]) * shift;
+        body.m_nodes[static_cast<int>(i)].m_x -=
+            vectorOf(m_accelerations[i]) * shift + vectorOf(m_supports[i]) * supportShift;
 }
 
 // Sorts the links by parts of the cloth, which is cut where its nodes are now.
@@ -248,7 +266,7 @@ void SubstepBody::begin(const btSoftBody& body, ClothContacts* recorded, const C
         m_alone.m_perSecond = static_cast<float>(body.m_sst.isdt);
     }
     m_substeps.prepare(static_cast<float>(body.m_sst.sdt), substepsOf(body), static_cast<float>(body.m_cfg.kDP),
-                       m_accelerations);
+                       m_accelerations, m_supports);
 }
 
 void SubstepBody::readPaths(const btSoftBody& body, ClothContacts* recorded, ThreadTeam* threads)
@@ -275,9 +293,13 @@ void SubstepBody::addRows(const btSoftBody& body, const SolverNodes& nodes, Rigi
     bodies.addRows(body, nodes, m_rigidRows);
 }
 
-std::size_t SubstepBody::end(const SolverNodes& nodes, btSoftBody& body, ThreadTeam* threads)
+std::size_t SubstepBody::end(ClothContacts& cloth, btSoftBody& body, ThreadTeam* threads)
 {
+    cloth.addSlides();
+    const SolverNodes& nodes = cloth.m_nodes;
+    const float perSecond = float(body.m_sst.isdt);
     std::atomic<std::size_t> invalid{0};
+    m_isSupported = true;
     const auto write = [&](std::size_t first, std::size_t last)
     {
         std::size_t count = 0;
@@ -285,6 +307,8 @@ std::size_t SubstepBody::end(const SolverNodes& nodes, btSoftBody& body, ThreadT
         {
             btSoftBody::Node& node = body.m_nodes[static_cast<int>(i)];
             writeNode(nodes, i, node);
+            m_supports[i] = nodeSupport(nodes.states() + i, vec3Of(m_velocities[i]), m_accelerations[i], perSecond,
+                                        cloth.m_leastThickness);
             node.m_f.setZero();
             count += !positionIsValid(vec3Of(node.m_x));
         }

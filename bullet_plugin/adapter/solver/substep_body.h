@@ -38,15 +38,24 @@ public:
     // Records the velocities before the body's prediction, after reserve(). Allocates no memory. threads: null for the
     // caller alone.
     void beforePrediction(const btSoftBody& body, ThreadTeam* threads);
-    // Brings the predicted positions to where substeps take free nodes. Call after the prediction, with the same nodes.
-    // Allocates no memory.
+    // Brings the predicted positions to where substeps take free nodes, and nodes that contacts hold. Call after the
+    // prediction, with the same nodes. Allocates no memory.
     void afterPrediction(btSoftBody& body, ThreadTeam* threads);
     // Begins a step whose nodes the device predicts (kept_bodies.h).
     void predictOnDevice() { m_isPredicted = m_isOnDevice = true; }
     // Returns whether the step has begun so, and the nodes have not come since.
     bool isOnDevice() const { return m_isOnDevice; }
-    // Returns how far the end of a free path in substeps lies from Bullet's prediction, per unit of acceleration, s².
+    // Returns how far the end of a path in substeps lies from Bullet's prediction, s²: per unit of acceleration, and of
+    // support (nodeSupport()).
     static btScalar pathShift(const btSoftBody& body);
+    static btScalar supportShift(const btSoftBody& body);
+    // Returns whether this object solved the last step, and by node how contacts held it then, m/s² (nodeSupport()).
+    bool isSupported() const { return m_isSupported; }
+    const std::vector<Vec3>& supports() const { return m_supports; }
+    // Takes these from a step of the device; call before the prediction.
+    void setSupports(const std::vector<Vec3>& supports);
+    // Returns the velocities before the prediction, m/s.
+    const std::vector<btVector3>& velocities() const { return m_velocities; }
     // Returns whether the body has the nodes of the prediction.
     bool fits(const btSoftBody& body) const;
     // Leaves the step to Bullet, with Bullet's prediction.
@@ -73,7 +82,7 @@ public:
     RigidRows* rigidRows() { return m_rigidRows.empty() ? nullptr : &m_rigidRows; }
     // Gives the body the solver's result. Returns the number of its nodes whose positions are not valid. threads: null
     // for the caller alone.
-    static std::size_t end(const SolverNodes& nodes, btSoftBody& body, ThreadTeam* threads);
+    std::size_t end(ClothContacts& cloth, btSoftBody& body, ThreadTeam* threads);
 
 private:
     static constexpr int kLeastSubsteps = 2;
@@ -100,6 +109,8 @@ private:
     bool m_isOnDevice = false;            // the device predicts the nodes
     std::vector<btVector3> m_velocities;  // before the prediction, m/s
     std::vector<Vec3> m_accelerations;    // m/s², constant in the step
+    std::vector<Vec3> m_supports;         // m/s², of the step before, then of this one
+    bool m_isSupported = false;           // m_supports is of the step before
     std::vector<Prediction> m_predictions;
     std::vector<LinkInput> m_links;  // by link, as last read
     int m_iterations = 0;            // piterations when they were set

@@ -12,10 +12,11 @@ using KeptId = std::uint32_t;
 struct KeptStep
 {
     KeptId m_id = 0;
-    Vec3 m_gravity = {};    // m/s, what gravity adds to a velocity in the step
-    float m_time = 0;       // s
-    float m_perSecond = 0;  // 1/s, the inverse as Bullet has it
-    float m_shift = 0;      // s², see SubstepBody::afterPrediction()
+    Vec3 m_gravity = {};       // m/s, what gravity adds to a velocity in the step
+    float m_time = 0;          // s
+    float m_perSecond = 0;     // 1/s, the inverse as Bullet has it
+    float m_shift = 0;         // s², of the acceleration: see SubstepBody::afterPrediction()
+    float m_supportShift = 0;  // s², the same of a node's support
 };
 
 // Boxes around a kept cloth in its coming step, m: of its nodes' positions, of the ends that Bullet predicts, and of

@@ -37,6 +37,7 @@ struct ClothContacts
     const ClothParts* m_parts = nullptr;    // the caller owns them
     const FeatureOrder* m_order = nullptr;  // the caller's; null for a cloth without contacts
     SolverNodes m_nodes;
+    std::vector<Vec3> m_slides;               // m/s, by node, see cutAtImpacts(); empty if no path was cut
     std::vector<FeatureContacts> m_features;  // in canonical order
     bool m_isFiltered = false;                // m_features are not all of the detection's contacts and no others
     std::vector<ClothObstacle> m_obstacles;   // in the order of the limit's regions
@@ -57,11 +58,19 @@ struct ClothContacts
         m_order = order;
         m_leastThickness = std::numeric_limits<float>::infinity();
         m_mostThickness = 0;
+        m_slides.clear();
         m_features.clear();
         m_isFiltered = false;
         m_obstacles.clear();
         m_limit.clear();
         m_mayHavePassed = m_isSolved = false;
+    }
+    // Gives the nodes the velocities that cuts of their paths left along surfaces.
+    void addSlides()
+    {
+        for (std::size_t i = 0; i < m_slides.size(); ++i)
+            m_nodes.addVelocity(i, m_slides[i]);
+        m_slides.clear();
     }
     SolverContact resolve(const ContactSource& source, const Contact& contact) const
     {

@@ -52,6 +52,7 @@ public:
     const SolverNode* nodes() const { return m_nodes.data(); }
     const NodePath* paths() const { return m_paths.data(); }
     NodeState* states() { return m_states.data(); }
+    const NodeState* states() const { return m_states.data(); }
     Vec3 start(std::size_t node) const { return m_paths[node].m_start; }
     // Returns the vector from the path's start to its end, m.
     Vec3 pathVector(std::size_t node) const { return m_paths[node].m_vector; }
@@ -64,8 +65,9 @@ public:
 
     // Moves the node and marks it as shifted.
     void shift(std::size_t node, Vec3 by) { nodeShift(&m_nodes[node], &m_states[node], by); }
-    void markShifted(std::size_t node) { m_states[node].m_shifted = 1; }
-    bool isShifted(std::size_t node) const { return m_states[node].m_shifted != 0; }
+    // Marks a node that a contact has pushed.
+    void markPushed(std::size_t node) { m_states[node].m_shifted |= DRAPE_NODE_SHIFTED | DRAPE_NODE_PUSHED; }
+    bool isShifted(std::size_t node) const { return (m_states[node].m_shifted & DRAPE_NODE_SHIFTED) != 0; }
     void addVelocity(std::size_t node, Vec3 by) { setVelocity(node, vec3Add(velocity(node), by)); }
     void setVelocity(std::size_t node, Vec3 velocity) { m_states[node].m_velocity = velocity; }
 

@@ -194,7 +194,7 @@ DRAPE_FUNCTION void limitSpeed(const ActingContact* contact, DRAPE_GLOBAL NodeSt
         DRAPE_GLOBAL NodeState* state = states + row->m_nodes[k];
         const Vec3 loss = vec3Scale(row->m_normal, -(row->m_shares[k] * excess * row->m_inverseMobility));
         state->m_velocity = vec3Add(state->m_velocity, loss);
-        state->m_shifted = 1;
+        state->m_shifted |= DRAPE_NODE_SHIFTED;
     }
 }
 

@@ -12,8 +12,8 @@ static void beginNodes(const Solve* solve, const SolveRange nodes)
     {
         const NodePath path = solve->m_paths[i];
         nodeAt(solve, i)->m_inverseMass = path.m_freeMass;
-        nodeBegin(nodeAt(solve, i), solve->m_states + i, path.m_vector, solve->m_accelerations[i], cloth->m_perStep,
-                  cloth->m_pathShare);
+        nodeBegin(nodeAt(solve, i), solve->m_states + i, path.m_vector,
+                  vec3Add(solve->m_accelerations[i], solve->m_supports[i]), cloth->m_perStep, cloth->m_pathShare);
         solve->m_states[i].m_shifted = 0;
     }
 }

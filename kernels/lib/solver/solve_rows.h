@@ -263,7 +263,7 @@ DRAPE_HOT_FUNCTION int pushContact(const Solve* solve, const uint index, const S
             vec3AddScaled(at.m_nodes[k], shift, acting->m_row.m_shares[k]);  // the inverse mass beside it stays
     if (contact->m_pushing == sweep->m_phase) return 1;
     for (uint k = 0; k < count; ++k)
-        solve->m_states[contact->m_nodes[k]].m_shifted = 1;
+        solve->m_states[contact->m_nodes[k]].m_shifted |= DRAPE_NODE_SHIFTED | DRAPE_NODE_PUSHED;
     solve->m_acting[index].m_pushed = 1;
     solve->m_sorted[index].m_pushing = sweep->m_phase;
     return 1;

@@ -37,7 +37,8 @@ typedef struct Solve
     uint m_base;
     __local uint* m_shared;  // DRAPE_SHARED_WORDS
     __global NodePath* m_paths;
-    __global Vec3* m_accelerations;
+    __global const Vec3* m_accelerations;
+    __global const Vec3* m_supports;
     __global NodeState* m_states;
     __global SolveBucket* m_buckets;
     __global SolveProgress* m_progress;
@@ -163,7 +164,8 @@ DRAPE_HOT_FUNCTION void openCloth(Solve* solve, const SolveLayout* layout, __glo
     solve->m_faces = (__global const int*)(topology + layout->m_faces);
     solve->m_contacts = contacts + DRAPE_CONTACT_HEAD;
     solve->m_paths = (__global NodePath*)(work + layout->m_paths) + firstNode;
-    solve->m_accelerations = (__global Vec3*)(work + layout->m_accelerations) + firstNode;
+    solve->m_accelerations = (__global const Vec3*)(work + layout->m_accelerations) + firstNode;
+    solve->m_supports = (__global const Vec3*)(work + layout->m_supports) + firstNode;
     solve->m_states = (__global NodeState*)(work + layout->m_states) + firstNode;
     solve->m_buckets = (__global SolveBucket*)(work + layout->m_buckets);
     solve->m_progress = (__global SolveProgress*)(work + layout->m_progress) + index;

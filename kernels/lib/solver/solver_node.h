@@ -37,13 +37,39 @@ DRAPE_FUNCTION void nodeSettle(DRAPE_NODE_SPACE SolverNode* node, DRAPE_GLOBAL N
 DRAPE_FUNCTION void nodeRemember(const DRAPE_NODE_SPACE SolverNode* node, DRAPE_GLOBAL NodeState* state)
 {
     state->m_before = node->m_displacement;
-    state->m_shifted = 0;
+    state->m_shifted &= DRAPE_NODE_PUSHED;
 }
 
 DRAPE_FUNCTION void nodeShift(DRAPE_NODE_SPACE SolverNode* node, DRAPE_GLOBAL NodeState* state, Vec3 by)
 {
     node->m_displacement = vec3Add(node->m_displacement, by);
-    state->m_shifted = 1;
+    state->m_shifted |= DRAPE_NODE_SHIFTED;
+}
+
+// Maximum acceleration by contacts that nodeSupport() takes for lasting, as a share of that by gravity and forces. A
+// greater one is a blow.
+#define DRAPE_MOST_LASTING_SUPPORT 1.5f
+
+// Share of the thickness that gravity and forces must move a node in a step to make its cloth thin.
+#define DRAPE_THIN_SHARE 0.5f
+
+// Returns the acceleration, m/s², that contacts will give a node of thin cloth in the next step if they hold it as in
+// this one, or 0 if none pushed it. It is that of this step; after a blow it is the part that gravity and forces call
+// for. Without it the path would pass the surface that the node lies on. Thicker cloth has none: paths that end below
+// their resting places, where normals of neighbouring features differ, let it come to rest. before: m/s, the node's
+// velocity at this step's start. acceleration: m/s², by gravity and forces. perStep: 1/s, the inverse of the step's
+// time. thickness: m, the least of the cloth's pairs.
+DRAPE_FUNCTION Vec3 nodeSupport(const DRAPE_GLOBAL NodeState* state, Vec3 before, Vec3 acceleration, float perStep,
+                                float thickness)
+{
+    const float acceleration2 = vec3Dot(acceleration, acceleration);
+    const float least = DRAPE_THIN_SHARE * thickness * perStep * perStep;
+    if (!(state->m_shifted & DRAPE_NODE_PUSHED) || !(acceleration2 > least * least)) return vec3(0.0f, 0.0f, 0.0f);
+    const Vec3 gained = vec3Scale(vec3Sub(state->m_velocity, before), perStep);
+    const Vec3 support = vec3Sub(gained, acceleration);
+    const float length2 = vec3Dot(support, support);
+    if (!(length2 > DRAPE_MOST_LASTING_SUPPORT * DRAPE_MOST_LASTING_SUPPORT * acceleration2)) return support;
+    return vec3Scale(support, drapeMax(0.0f, -vec3Dot(support, acceleration)) / length2);
 }
 
 // Puts the node at its path's start, with the velocity that leads to the end under constant acceleration. perStep: 1/s,
@@ -76,7 +102,7 @@ DRAPE_FUNCTION void nodeEnd(const DRAPE_NODE_SPACE SolverNode* node, DRAPE_GLOBA
 DRAPE_FUNCTION void nodeAddShift(const DRAPE_NODE_SPACE SolverNode* node, DRAPE_GLOBAL NodeState* state,
                                  float perSecond)
 {
-    if (!state->m_shifted) return;
+    if (!(state->m_shifted & DRAPE_NODE_SHIFTED)) return;
     const Vec3 shift = vec3Sub(node->m_displacement, state->m_before);
     state->m_velocity = vec3Add(state->m_velocity, vec3Scale(shift, perSecond));
 }
@@ -87,7 +113,7 @@ DRAPE_FUNCTION void nodeAddShift(const DRAPE_NODE_SPACE SolverNode* node, DRAPE_
 DRAPE_FUNCTION void nodeLimitShift(const DRAPE_NODE_SPACE SolverNode* node, DRAPE_GLOBAL NodeState* state,
                                    float perSecond, float stepsPerSecond)
 {
-    if (!state->m_shifted) return;
+    if (!(state->m_shifted & DRAPE_NODE_SHIFTED)) return;
     const Vec3 shift = vec3Sub(node->m_displacement, state->m_before);
     const float length = vec3Length(shift);
     if (!(length > 0.0f)) return;

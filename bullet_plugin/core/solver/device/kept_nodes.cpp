@@ -108,6 +108,7 @@ KeptCloth KeptNodes::clothOf(const KeptStep& step) const
     cloth.m_time = step.m_time;
     cloth.m_perSecond = step.m_perSecond;
     cloth.m_shift = step.m_shift;
+    cloth.m_supportShift = step.m_supportShift;
     return cloth;
 }
 

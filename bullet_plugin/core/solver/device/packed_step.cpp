@@ -118,6 +118,24 @@ void PackedStep::packCloth(std::size_t index, const ContactSource& source, const
     m_clothRecords.push_back(cloth);
 }
 
+// Copies what the solver needs of nodes that the host has.
+void PackedStep::copyNodesTo(SolveInputWord* words) const
+{
+    const SolveLayout& layout = m_step.m_layout;
+    for (std::size_t i = 0; i < m_cloths.size(); ++i)
+    {
+        if (m_cloths[i].m_kept) continue;
+        const SolverNodes& cloth = m_cloths[i].m_contacts->m_nodes;
+        const std::size_t first = m_clothRecords[i].m_nodes.m_first;
+        copyToWords(words, layout.m_givenPaths + first * sizeof(NodePath) / sizeof(*words), cloth.paths(),
+                    cloth.count());
+        const std::size_t firstVector = first * sizeof(Vec3) / sizeof(*words);
+        copyToWords(words, layout.m_givenAccelerations + firstVector, m_cloths[i].m_substeps->accelerations(),
+                    cloth.count());
+        copyToWords(words, layout.m_givenSupports + firstVector, m_cloths[i].m_substeps->supports(), cloth.count());
+    }
+}
+
 // Lays out the arrays and fills the input.
 void PackedStep::layOut(const ContactSource& source, SolveStage& stage)
 {
@@ -130,6 +148,7 @@ void PackedStep::layOut(const ContactSource& source, SolveStage& stage)
     layout.m_cloths = input.add<SolveCloth>(cloths);
     layout.m_givenPaths = input.add<NodePath>(nodes);
     layout.m_givenAccelerations = input.add<Vec3>(nodes);
+    layout.m_givenSupports = input.add<Vec3>(nodes);
     layout.m_surfaces = input.add<SolveSurface>(m_surfaces.size());
     layout.m_regions = input.add<SolveRegion>(m_regions.size());
     layout.m_obstacles = input.add<MeshOffsets>(m_obstacles.size());
@@ -151,6 +170,7 @@ void PackedStep::layOut(const ContactSource& source, SolveStage& stage)
     if (!allKept) m_step.m_resultWords = work.words() - m_step.m_clearedWords;
     layout.m_paths = work.add<NodePath>(nodes);
     layout.m_accelerations = work.add<Vec3>(nodes);
+    layout.m_supports = work.add<Vec3>(nodes);
     layout.m_sorted = work.add<SolveContact>(contacts);
     layout.m_order = work.add<std::uint32_t>(contacts);
     layout.m_acting = work.add<ActingContact>(contacts);
@@ -165,16 +185,7 @@ void PackedStep::layOut(const ContactSource& source, SolveStage& stage)
     copyToWords(words, layout.m_regions, m_regions.data(), m_regions.size());
     copyToWords(words, layout.m_obstacles, m_obstacles.data(), m_obstacles.size());
     m_rigid.copyTo(words);
-    for (std::size_t i = 0; i < m_cloths.size(); ++i)
-    {
-        if (m_cloths[i].m_kept) continue;
-        const SolverNodes& cloth = m_cloths[i].m_contacts->m_nodes;
-        const std::size_t first = m_clothRecords[i].m_nodes.m_first;
-        copyToWords(words, layout.m_givenPaths + first * sizeof(NodePath) / sizeof(*words), cloth.paths(),
-                    cloth.count());
-        copyToWords(words, layout.m_givenAccelerations + first * sizeof(Vec3) / sizeof(*words),
-                    m_cloths[i].m_substeps->accelerations(), cloth.count());
-    }
+    copyNodesTo(words);
 }
 
 // Lists the cloths whose nodes stay on the device.
@@ -187,6 +198,7 @@ void PackedStep::packKept(const SolveStage& stage)
         KeptCloth kept = stage.kept().clothOf(*m_cloths[i].m_kept);
         kept.m_solved = m_clothRecords[i].m_nodes.m_first;
         kept.m_mostOffPath = m_cloths[i].m_contacts->m_limit.freeDistance();
+        kept.m_leastThickness = m_cloths[i].m_contacts->m_leastThickness;
         m_step.m_kept.push_back(kept);
     }
 }

@@ -35,6 +35,7 @@ private:
                    SolveCloth& packed) const;
     void packKept(const SolveStage& stage);
     void packRegions(const ClothContacts& contacts, const ContactSource& source, SolveCloth& cloth);
+    void copyNodesTo(SolveInputWord* words) const;
     void layOut(const ContactSource& source, SolveStage& stage);
     void describeLaunches();
     bool isSolved(std::size_t cloth, const SolveResult& result, bool behind) const;

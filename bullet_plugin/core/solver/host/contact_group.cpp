@@ -148,7 +148,7 @@ bool ContactGroup::project(const SweptCloth& cloth, ActingContact& acting, float
     const float relaxation = cloth.m_actingSweeps > 0 ? DRAPE_TURN_RELAXATION : 1.0f;
     if (!projectRow(&row, nodes.nodes(), cloth.m_passed, cloth.m_tolerated, relaxation, &worst)) return false;
     for (std::uint32_t k = 0; k < row.m_count; ++k)
-        nodes.markShifted(row.m_nodes[k]);
+        nodes.markPushed(row.m_nodes[k]);
     acting.m_pushed = 1;
     return true;
 }

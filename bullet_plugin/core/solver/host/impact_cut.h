@@ -3,7 +3,8 @@
 // Detection runs again after a cut.
 //
 // Input: nodes at the ends of the paths along which the contacts were found. Before a moving obstacle, a path ends
-// where the obstacle carries it. The rest of the path is lost for the step, as if the node had stopped there. Cloth
+// where the obstacle carries it. The rest of the path is lost for the step, as if the node had stopped there; the
+// velocity along the surface can be given back at its end. Cloth
 // that would pass no surface within the step (it rests, slides, or falls by less than the thickness) is not changed.
 // Cost: linear in the contacts.
 #pragma once
@@ -30,6 +31,9 @@ enum class Cut
 bool anyCuts(const std::vector<SolverContact>& contacts);
 
 // Cuts the paths of nodes that constraints move. Shifts the nodes to the new ends; their velocities lose perSecond
-// (1/s) times the rest of the path. Returns whether any path was cut.
-bool cutAtImpacts(SolverNodes& nodes, const std::vector<SolverContact>& contacts, Cut cut, float perSecond);
+// (1/s) times the rest of the path. slides: if not null, gets by node, m/s, what friction leaves of that along the
+// surface, after that of the step's earlier cuts. A node that starts where its path ends is held there and gets none.
+// Returns whether any path was cut.
+bool cutAtImpacts(SolverNodes& nodes, const std::vector<SolverContact>& contacts, Cut cut, float perSecond,
+                  std::vector<Vec3>* slides = nullptr);
 }  // namespace drape

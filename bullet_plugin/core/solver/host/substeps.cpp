@@ -32,7 +32,8 @@ void forNodes(std::size_t count, ThreadTeam* threads, const Work& work)
 }
 }  // namespace
 
-void Substeps::prepare(float time, int count, float damping, const std::vector<Vec3>& accelerations)
+void Substeps::prepare(float time, int count, float damping, const std::vector<Vec3>& accelerations,
+                       const std::vector<Vec3>& supports)
 {
     m_time = time;
     m_count = count;
@@ -45,6 +46,7 @@ void Substeps::prepare(float time, int count, float damping, const std::vector<V
         m_leastRatio = kLeastRatio;
     }
     m_accelerations = &accelerations;
+    m_supports = &supports;
     m_settles = damping <= kMostSettledDamping;
     m_undamped = float(std::pow(1 - std::min(1.0, std::max(0.0, double(damping))), 1.0 / count));
 }
@@ -53,9 +55,10 @@ void Substeps::begin(SolverNodes& nodes, ThreadTeam* threads)
 {
     m_links.start(nodes.paths(), threads);
     forNodes(nodes.count(), threads,
-             [&](std::size_t i) {
-                 nodeBegin(nodes.nodes() + i, nodes.states() + i, nodes.pathVector(i), accelerations()[i], perStep(),
-                           pathTime());
+             [&](std::size_t i)
+             {
+                 nodeBegin(nodes.nodes() + i, nodes.states() + i, nodes.pathVector(i),
+                           vec3Add(accelerations()[i], supports()[i]), perStep(), pathTime());
              });
 }
 

@@ -1,6 +1,7 @@
 // Moves the nodes of a cloth through a step in substeps of equal length, with its links.
 //
-// A node's path through the step is the parabola from its start to its end under constant acceleration. A substep
+// A node's path through the step is the parabola from its start to its end under constant acceleration, and under what
+// contacts are expected to add to it. A substep
 // moves every node along its velocity; then constraints correct the positions, and the velocities follow (Macklin et
 // al. 2019, Small Steps in Physics Simulation). Links keep the stiffness that Bullet's iterations give them
 // (link_strength.h). The same bits with any number of threads. Cost: linear in nodes and links.
@@ -42,10 +43,13 @@ public:
     // Returns the share of the acceleration in a node's mean velocity, s.
     float pathTime() const { return pathShare(m_count) * m_time; }
     const Vec3* accelerations() const { return m_accelerations->data(); }
+    const Vec3* supports() const { return m_supports->data(); }
 
     // Prepares a step of `time` seconds (> 0) in `count` parts. damping: the share of a velocity that is lost in the
-    // step, 0 to 1. accelerations: of the nodes, m/s²; they must stay in place until the last substep.
-    void prepare(float time, int count, float damping, const std::vector<Vec3>& accelerations);
+    // step, 0 to 1. accelerations: of the nodes, m/s²; supports: what their paths have beside these, m/s²
+    // (nodeSupport()). Both must stay in place until the last substep.
+    void prepare(float time, int count, float damping, const std::vector<Vec3>& accelerations,
+                 const std::vector<Vec3>& supports);
     // Records that another solver made the step before: it may have left other errors than substeps do. Call before
     // prepare().
     void changeOver() { m_changesOver = true; }
@@ -67,6 +71,7 @@ public:
 private:
     LinkSweep m_links;
     const std::vector<Vec3>* m_accelerations = nullptr;
+    const std::vector<Vec3>* m_supports = nullptr;
     float m_time = 1;
     float m_correctionTime = 0;
     float m_undamped = 1;
