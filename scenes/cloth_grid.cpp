@@ -1,6 +1,7 @@
 #include "scenes/cloth_grid.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace drape
 {
@@ -51,5 +52,36 @@ ClothGrid makeClothGrid(int columns, int rows, float size, float y)
     for (const auto& offset : offsets)
         addSprings(grid.m_bendingSprings, columns, rows, offset[0], offset[1]);
     return grid;
+}
+
+ClothGrid makeClothTube(int around, int rows, float radius, float height)
+{
+    constexpr double kPi = 3.14159265358979323846;
+    ClothGrid tube;
+    std::vector<float>& positions = tube.m_mesh.m_positions;
+    for (int j = 0; j < rows; ++j)
+        for (int i = 0; i < around; ++i)
+        {
+            const double angle = -2 * kPi * i / around;
+            positions.insert(positions.end(), {static_cast<float>(radius * std::cos(angle)),
+                                               static_cast<float>(height * (static_cast<double>(j) / (rows - 1) - 0.5)),
+                                               static_cast<float>(radius * std::sin(angle))});
+        }
+    const auto node = [&](int i, int j) { return j * around + i % around; };
+    const auto addRound = [&](std::vector<std::int32_t>& springs, int di, int dj)
+    {
+        for (int j = 0; j + dj < rows; ++j)
+            for (int i = 0; i < around; ++i)
+                springs.insert(springs.end(), {node(i, j), node(i + di + around, j + dj)});
+    };
+    addRound(tube.m_edgeSprings, 1, 0);
+    addRound(tube.m_edgeSprings, 0, 1);
+    for (int j = 0; j + 1 < rows; ++j)
+        for (int i = 0; i < around; ++i)
+            addCell(tube, node(i, j + 1), node(i + 1, j + 1), node(i + 1, j), node(i, j), ((i + j) & 1) != 0);
+    const int offsets[4][2] = {{2, 0}, {0, 2}, {2, 2}, {-2, 2}};
+    for (const auto& offset : offsets)
+        addRound(tube.m_bendingSprings, offset[0], offset[1]);
+    return tube;
 }
 }  // namespace drape

@@ -21,4 +21,8 @@ struct ClothGrid
 // Makes a cloth of columns × rows nodes (each ≥ 2), square cells, longer side `size` m, centred at x = z = 0, height y.
 // Diagonals alternate from cell to cell, so the cloth has no preferred direction. Normals point up.
 ClothGrid makeClothGrid(int columns, int rows, float size, float y);
+
+// Makes a tube of `around` (≥ 5) × rows (≥ 3) nodes around y, half of its height below y = 0. Normals point outwards.
+// Springs as above.
+ClothGrid makeClothTube(int around, int rows, float radius, float height);
 }  // namespace drape

@@ -120,7 +120,6 @@ void expectGood(const std::vector<NamedWorld>& named, WorldBackend backend)
 {
     WorkerOptions options;
     options.m_backend = backend;
-    options.m_timeout = 10;
     for (const NamedWorld& world : named)
     {
         ModifierChoice choice;

@@ -11,6 +11,9 @@ namespace drape
 {
 namespace
 {
+// Greatest way in a step of a node whose triangles intersect others, as a share of the thickness.
+constexpr float kPushedShare = 0.1f;
+
 std::uint64_t mix(std::uint64_t hash, std::uint64_t value)
 {
     return (hash ^ value) * 0x100000001b3ull;
@@ -68,6 +71,7 @@ void ClothMeetings::assignSet()
 void ClothMeetings::begin(const Bodies& bodies, const std::function<bool(const btSoftBody&)>& isStepped)
 {
     m_members.clear();
+    m_state.m_clothPairs.clear();
     bool anyStepped = false;
     for (int i = 0; m_state.m_selfCollision.any() && i < bodies.size(); ++i)
     {
@@ -79,6 +83,7 @@ void ClothMeetings::begin(const Bodies& bodies, const std::function<bool(const b
         if (thickness > 0) m_members.push_back({bodies[i], thickness, moves, nullptr, false});
     }
     if (!anyStepped) m_members.clear();
+    m_wasPushed = false;
     if (m_members.empty()) return;
     const std::uint64_t layout = layoutHash();
     if (layout != m_layout || m_set.memberCount() != m_members.size())
@@ -152,10 +157,39 @@ void ClothMeetings::checkStarts()
     m_meeting.clear();
     const bool isKnown =
         m_lastEnds.size() == 3 * m_set.nodeCount() && std::equal(m_lastEnds.begin(), m_lastEnds.end(), m_set.start());
-    if (!isKnown) m_set.findMeeting(m_meeting);
+    if (!isKnown) listMeeting();
     m_meets.assign(m_set.nodeCount(), 0);
     for (const std::uint32_t node : m_meeting)
         m_meets[node] = 1;
+    for (std::size_t i = 0; i < m_meeting.size(); i += 6)
+        m_state.m_clothPairs.push_back(pairAt(i));
+}
+
+// Lists the triangles that intersect, of bodies that may meet.
+void ClothMeetings::listMeeting()
+{
+    m_set.findMeeting(m_meeting);
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < m_meeting.size(); i += 6)
+    {
+        if (!canMeet(m_set.memberOf(m_meeting[i]), m_set.memberOf(m_meeting[i + 3]))) continue;
+        std::copy_n(m_meeting.begin() + std::ptrdiff_t(i), 6, m_meeting.begin() + std::ptrdiff_t(kept));
+        kept += 6;
+    }
+    m_meeting.resize(kept);
+}
+
+// Returns two triangles that intersect, from the first of their nodes in the list.
+ClothPairInfo ClothMeetings::pairAt(std::size_t first) const
+{
+    ClothPairInfo pair;
+    for (std::size_t k = 0; k < 6; ++k)
+    {
+        const std::size_t node = m_meeting[first + k], member = m_set.memberOf(node);
+        pair.m_bodies[k / 3] = m_members[member].m_body;
+        pair.m_nodes[k / 3][k % 3] = int(node - m_set.firstNode(member));
+    }
+    return pair;
 }
 
 // Returns whether all nodes belong to triangles that intersect others: the features of these must pass each other to
@@ -203,9 +237,25 @@ bool ClothMeetings::hasRows(const SolverNodes& nodes) const
                        [&](const Member& member) { return member.m_nodes == &nodes && member.m_hasRows; });
 }
 
+// Moves the ends of triangles that started intersecting, once in a step. Their velocities stay.
+void ClothMeetings::pushApart()
+{
+    m_push.compute(m_wasPushed ? std::vector<std::uint32_t>() : m_meeting, m_set.start(), m_isHeld,
+                   double(kPushedShare * m_set.thickness()));
+    m_wasPushed = true;
+    for (std::size_t i = 0; i < m_push.displacements().size(); ++i)
+        m_set.end()[i] += float(m_push.displacements()[i]);
+}
+
+bool ClothMeetings::isPushed(std::size_t node) const
+{
+    const std::vector<double>& all = m_push.displacements();
+    return !all.empty() && (all[3 * node] != 0 || all[3 * node + 1] != 0 || all[3 * node + 2] != 0);
+}
+
 const std::vector<btSoftBody*>& ClothMeetings::guard()
 {
-    m_shortened.clear();
+    m_moved.clear();
     m_isHeld.assign(m_set.nodeCount(), 0);
     const auto write = [&](const Member& member, const btSoftBody::Node& node, std::size_t index)
     {
@@ -215,6 +265,7 @@ const std::vector<btSoftBody*>& ClothMeetings::guard()
         m_isHeld[index] = !member.m_isStepped || !(node.m_im > 0);
     };
     forNodes(write);
+    pushApart();
     const GuardResult result = m_guard.apply(
         m_set, m_isHeld, [this](const std::uint32_t* nodes) { return isGuarded(nodes); },
         m_state.settings().m_candidateLimit, m_state.threads());
@@ -226,17 +277,17 @@ const std::vector<btSoftBody*>& ClothMeetings::guard()
     statistics.m_clothPairsMeeting = m_meeting.size() / 6 + result.m_startMeeting + result.m_forced;
     if (statistics.m_clothPairsMeeting > 0) statistics.m_status |= kStepClothsMeet;
     if (result.m_tooMany) statistics.m_status |= kStepMotionHeldBack;
-    if (result.m_shortened == 0) return m_shortened;
+    if (result.m_shortened == 0 && m_push.displacements().empty()) return m_moved;
     const auto read = [&](Member& member, btSoftBody::Node& node, std::size_t index)
     {
         const double share = m_guard.shares()[index];
-        if (!(share < 1)) return;
+        if (!(share < 1) && !isPushed(index)) return;
         node.m_x = vectorOf(vec3Load(m_set.end(), std::uint32_t(index)));
         node.m_v *= btScalar(share);
-        if (m_shortened.empty() || m_shortened.back() != member.m_body) m_shortened.push_back(member.m_body);
+        if (m_moved.empty() || m_moved.back() != member.m_body) m_moved.push_back(member.m_body);
     };
     forNodes(read);
-    return m_shortened;
+    return m_moved;
 }
 
 void ClothMeetings::holdStill()

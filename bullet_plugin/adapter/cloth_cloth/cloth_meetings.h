@@ -12,6 +12,7 @@
 #include "BulletSoftBody/btSoftBody.h"
 #include "bullet_plugin/adapter/wiring/plugin_state.h"
 #include "bullet_plugin/core/cloth_cloth/cloth_guard.h"
+#include "bullet_plugin/core/cloth_cloth/contour_push.h"
 #include "bullet_plugin/core/solver/host/cloth_rows.h"
 
 namespace drape
@@ -34,8 +35,9 @@ public:
     ClothRows& find(const NodesOf& nodesOf);
     // Returns whether a body with these nodes has a row.
     bool hasRows(const SolverNodes& nodes) const;
-    // Shortens the way of Bullet's nodes from their starts (m_q) to where they are (m_x). Lists the bodies with nodes
-    // that were shortened. Adds to the statistics.
+    // Brings triangles that started the step intersecting apart a little, in the step's first call. Then shortens the
+    // way of Bullet's nodes from their starts (m_q) to where they are (m_x). Lists the bodies with nodes that were
+    // moved. Adds to the statistics.
     const std::vector<btSoftBody*>& guard();
     // Puts all free nodes back to their starts, at rest.
     void holdStill();
@@ -58,8 +60,12 @@ private:
     void forNodes(const Write& write);
     void addRow(const SelfContactView& contact);
     void checkStarts();
+    void listMeeting();
+    ClothPairInfo pairAt(std::size_t first) const;
     bool isMeeting(const std::uint32_t nodes[4]) const;
     bool isGuarded(const std::uint32_t nodes[4]) const;
+    void pushApart();
+    bool isPushed(std::size_t node) const;
 
     PluginState& m_state;
     std::vector<Member> m_members;
@@ -68,10 +74,12 @@ private:
     std::vector<Contact> m_contacts;
     ClothRows m_rows;
     ClothGuard m_guard;
+    ContourPush m_push;
+    bool m_wasPushed = false;  // in this step
     std::vector<unsigned char> m_isHeld;
     std::vector<float> m_lastEnds;         // the set's nodes after the last step; empty if triangles may meet there
     std::vector<std::uint32_t> m_meeting;  // see ClothSet::findMeeting()
     std::vector<unsigned char> m_meets;    // by node of the set: it belongs to such a triangle
-    std::vector<btSoftBody*> m_shortened;
+    std::vector<btSoftBody*> m_moved;      // by the last guard()
 };
 }  // namespace drape

@@ -140,6 +140,12 @@ std::vector<ContactInfo> Plugin::contacts() const
     return guardedOr(std::vector<ContactInfo>(), [&] { return m_state->m_found.list(); });
 }
 
+std::vector<ClothPairInfo> Plugin::clothPairs() const
+{
+    if (!m_state) return {};
+    return guardedOr(std::vector<ClothPairInfo>(), [&] { return m_state->m_clothPairs; });
+}
+
 std::string Plugin::whyStock(const btCollisionObject* objectA, const btCollisionObject* objectB) const
 {
     if (!m_state) return outOfMemory();

@@ -42,6 +42,14 @@ struct ContactInfo
     float m_thickness;                    // thickness of the pair, m
 };
 
+// Two triangles of cloth that intersected where the last step began. The pointers are valid until the bodies are
+// removed; do not keep them over a step.
+struct ClothPairInfo
+{
+    const btSoftBody* m_bodies[2];  // each triangle's; one body twice if it intersects itself
+    int m_nodes[2][3];              // indices of each triangle's nodes in its body's m_nodes
+};
+
 // Owns the device and the copies of cloths and obstacles on it.
 //
 // The thickness of a pair is the soft body's collision margin plus the mesh shape's margin, and at least 0.1 mm. Cloth
@@ -80,6 +88,9 @@ public:
     const StepStatistics& statistics() const;
     // Returns the contacts of that step in canonical order; the call makes the list. Empty if memory runs out.
     std::vector<ContactInfo> contacts() const;
+    // Returns the triangles of cloth that intersected where that step began, among bodies of setSelfCollision(). Empty
+    // if memory runs out.
+    std::vector<ClothPairInfo> clothPairs() const;
     // Returns one line with the device, the reason for it and the last step. "out of memory" if memory runs out.
     std::string report() const;
 
@@ -163,8 +174,9 @@ public:
     // margin. Bodies of two thicknesses keep their mean. Features that are nearer when this is switched on keep half
     // of that distance. Friction is the greater kDF of the two. Cloth that does not intersect itself or another
     // body never does so at the end of a step; StepStatistics::m_clothPairsMeeting counts exceptions. The links of
-    // these bodies are solved on the host. If memory runs out, nothing changes. The body is remembered by its
-    // address until this is switched off.
+    // these bodies are solved on the host. Cloth that starts intersecting is pushed apart a little in every step, at a
+    // tenth of the thickness at most, and kept apart as it comes apart; clothPairs() lists it. If memory runs out,
+    // nothing changes. The body is remembered by its address until this is switched off.
     void setSelfCollision(const btSoftBody& body, bool collides, double thickness = 0);
 
     // Makes only the front of a mesh shape solid: the side from which its triangles run counter-clockwise. Cloth behind

@@ -12,6 +12,9 @@ namespace
 // Distance between two features, as a share of the thickness, below which the direction between them is not sure.
 constexpr float kSureDistance = 0.01f;
 
+// Distance beyond the resting one, as a share of the thickness, within which features may meet in a phase's sweeps.
+constexpr float kNearBy = 0.25f;
+
 // Writes the weights of the nearest points of two features: positive for the first one's nodes, negative for the
 // second's. positions: m.
 void nearestWeights(const Vec3 positions[4], int split, float weights[4])
@@ -89,13 +92,31 @@ void ClothRows::takePlane(Row& row)
     row.m_row.m_level = row.m_distance - vec3Dot(row.m_row.m_normal, offset);
 }
 
+// Returns the row's displacement, m.
+Vec3 ClothRows::wayOf(const Row& row)
+{
+    Vec3 way = vec3(0.0f, 0.0f, 0.0f);
+    for (int k = 0; k < 4; ++k)
+        way = vec3AddScaled(way, displacementOf(row.m_contact, k), row.m_weights[k]);
+    return way;
+}
+
+bool ClothRows::isNear(const Row& row)
+{
+    const float violation = row.m_row.m_level - vec3Dot(row.m_row.m_normal, wayOf(row));
+    return row.m_row.m_inverseMobility > 0.0f && violation > -kNearBy * row.m_contact.m_thickness;
+}
+
 void ClothRows::begin()
 {
-    for (Row& row : m_rows)
+    m_near.clear();
+    for (std::size_t i = 0; i < m_rows.size(); ++i)
     {
+        Row& row = m_rows[i];
         row.m_row.m_multiplier = 0.0f;
         row.m_row.m_held = vec3(0.0f, 0.0f, 0.0f);
         takePlane(row);
+        if (isNear(row)) m_near.push_back(std::uint32_t(i));
     }
 }
 
@@ -111,15 +132,13 @@ void ClothRows::push(Row& row, Vec3 by)
 float ClothRows::project(float relaxation, float tolerated)
 {
     float worst = 0.0f;
-    for (Row& row : m_rows)
+    for (const std::uint32_t index : m_near)
     {
-        if (!(row.m_row.m_inverseMobility > 0.0f)) continue;
-        Vec3 way = vec3(0.0f, 0.0f, 0.0f), by;
-        for (int k = 0; k < 4; ++k)
-            way = vec3AddScaled(way, displacementOf(row.m_contact, k), row.m_weights[k]);
+        Row& row = m_rows[index];
         const float thickness = row.m_contact.m_thickness;
         float violation = 0.0f;
-        if (pushRow(&row.m_row, way, 1.0f, tolerated * thickness, relaxation, &violation, &by)) push(row, by);
+        Vec3 by;
+        if (pushRow(&row.m_row, wayOf(row), 1.0f, tolerated * thickness, relaxation, &violation, &by)) push(row, by);
         worst = std::max(worst, violation / thickness);
     }
     return worst;

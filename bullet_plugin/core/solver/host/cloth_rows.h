@@ -3,6 +3,7 @@
 // Input: contacts along the predicted paths, in canonical order. Rows are projected in this order, on one thread, in
 // turns with the sweeps over links and obstacles' contacts (kernels/lib/solver/contact_row.h). A row's plane follows
 // the features: it is taken where they are nearest when a substep's sweeps begin, on the side from which they came.
+// Rows of features that are far apart then take no part until the next begin().
 // Every push is given to one feature and taken from the other, so momentum is kept. Friction is Coulomb's. Cost: some
 // 100 ns per row and sweep. Lengths in metres, world frame.
 #pragma once
@@ -33,13 +34,13 @@ struct ClothContact
 class ClothRows
 {
 public:
-    void clear() { m_rows.clear(); }
+    void clear() { m_rows.clear(), m_near.clear(); }
     bool empty() const { return m_rows.empty(); }
     void add(const ClothContact& contact);
     // Begins a phase, with no pushes: takes the planes where the nodes are now.
     void begin();
-    // Projects every row once. relaxation: share of a violation that is corrected. tolerated: share of the thickness
-    // that may remain of it. Returns the worst violation met, as a share of the thickness.
+    // Projects the rows that take part once. relaxation: share of a violation that is corrected. tolerated: share of
+    // the thickness that may remain of it. Returns the worst violation met, as a share of the thickness.
     float project(float relaxation, float tolerated);
     // Removes from the nodes' velocities what rows gained by recovering a depth that the step began with. perSecond:
     // 1/s, steps per second.
@@ -54,6 +55,8 @@ private:
         ContactRow m_row;    // its normal, level, multiplier and friction; nodes and weights are those above
     };
 
+    static bool isNear(const Row& row);
+    static Vec3 wayOf(const Row& row);
     static Vec3 startOf(const ClothContact& contact, int k);
     static Vec3 displacementOf(const ClothContact& contact, int k);
     static float inverseMassOf(const ClothContact& contact, int k);
@@ -61,5 +64,6 @@ private:
     static void push(Row& row, Vec3 by);
 
     std::vector<Row> m_rows;
+    std::vector<std::uint32_t> m_near;  // rows that take part, in order
 };
 }  // namespace drape

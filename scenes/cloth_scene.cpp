@@ -1,0 +1,348 @@
+#include "scenes/cloth_scene.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "scenes/cloth_curve.h"
+#include "scenes/lathe.h"
+#include "scenes/random.h"
+#include "scenes/shapes.h"
+
+namespace drape
+{
+namespace
+{
+constexpr double kPi = 3.14159265358979323846;
+constexpr double kAreaMass = 0.2;   // kg/m², of a cotton sheet
+constexpr double kLayerGap = 1.25;  // distance of layers at the start, in thicknesses
+
+// A flat cloth of columns × rows nodes, its longer side `size` m along x or z, at a height of 0.
+SceneCloth flatCloth(int columns, int rows, double size)
+{
+    SceneCloth cloth;
+    cloth.m_rest = makeClothGrid(columns, rows, float(size), 0);
+    cloth.m_positions = cloth.m_rest.m_mesh.m_positions;
+    const double cell = size / (std::max(columns, rows) - 1);
+    cloth.m_mass = kAreaMass * cell * cell * (columns - 1) * (rows - 1);
+    return cloth;
+}
+
+void shift(SceneCloth& cloth, const Vector3& by)
+{
+    for (std::size_t i = 0; i < cloth.m_positions.size(); ++i)
+        cloth.m_positions[i] += float(by[int(i % 3)]);
+}
+
+// Turns the cloth's start about y.
+void turnLevel(SceneCloth& cloth, double angle)
+{
+    const double c = std::cos(angle), s = std::sin(angle);
+    for (std::size_t i = 0; i < cloth.m_positions.size(); i += 3)
+    {
+        const double x = cloth.m_positions[i], z = cloth.m_positions[i + 2];
+        cloth.m_positions[i] = float(c * x + s * z);
+        cloth.m_positions[i + 2] = float(c * z - s * x);
+    }
+}
+
+// Places the cloth in the plane through its z with its own x downwards.
+void hang(SceneCloth& cloth)
+{
+    for (std::size_t i = 0; i < cloth.m_positions.size(); i += 3)
+    {
+        cloth.m_positions[i + 1] = -cloth.m_positions[i];
+        cloth.m_positions[i] = 0;
+    }
+}
+
+void hold(SceneCloth& cloth, const std::function<bool(const Vector3&)>& isHeld)
+{
+    for (std::size_t i = 0; i < cloth.m_positions.size(); i += 3)
+        if (isHeld({cloth.m_positions[i], cloth.m_positions[i + 1], cloth.m_positions[i + 2]}))
+            cloth.m_held.push_back(int(i / 3));
+}
+
+// Rises from 0 at `from` to 1 at `to`, without a jump of the speed.
+double smoothStep(double time, double from, double to)
+{
+    const double t = std::clamp((time - from) / (to - from), 0.0, 1.0);
+    return t * t * (3 - 2 * t);
+}
+
+std::function<ScenePose(double)> standing(const Vector3& at, const Vector3& axis = {0, 1, 0}, double angle = 0)
+{
+    return [=](double) { return ScenePose{at, axis, angle}; };
+}
+
+SceneObstacle table(double size)
+{
+    return {makeBox(float(size), 0.2f, float(size)), standing({0, -0.1, 0})};
+}
+
+// A square sheet between two clamps that turn against each other, eight turns in all, and come nearer.
+void twist(const ClothSceneSize& size, ClothScene& scene)
+{
+    constexpr double kSize = 1, kTurns = 4, kNearer = 0.6;
+    scene.m_thickness = 0.005;
+    scene.m_seconds = 16;
+    const int nodes = int(std::lround(50 * size.m_detail / 3.0));
+    SceneCloth cloth = flatCloth(nodes, nodes, kSize);
+    hold(cloth, [](const Vector3& at) { return std::abs(at.x) > 0.4999 * kSize; });
+    scene.m_cloths.push_back(cloth);
+    const double seconds = scene.m_seconds;
+    scene.m_heldAt = [seconds](std::size_t, const Vector3& start, double time)
+    {
+        const double share = std::min(1.0, time / seconds), side = start.x > 0 ? 1 : -1;
+        const double angle = side * 2 * kPi * kTurns * share, x = start.x * (1 - (1 - kNearer) * share);
+        return Vector3{x, std::sin(angle) * start.z, std::cos(angle) * start.z};
+    };
+}
+
+// A sheet over a funnel, and a ball that pushes it through.
+void funnel(const ClothSceneSize& size, ClothScene& scene)
+{
+    scene.m_thickness = 0.008;
+    scene.m_seconds = 4;
+    const int nodes = 24 * size.m_detail + 1;
+    scene.m_cloths.push_back(flatCloth(nodes, nodes, 1.1));
+    shift(scene.m_cloths.back(), {0, 0.02, 0});
+    const LatheProfile wall = {{0.14, -0.6}, {0.18, -0.6}, {0.18, -0.32}, {0.62, -0.02}, {0.60, 0.0}, {0.14, -0.3}};
+    scene.m_obstacles.push_back({makeRing(wall, 48), nullptr});
+    scene.m_obstacles.push_back({makeSphere(0.09f, 3), [](double time) {
+                                     return ScenePose{{0, 0.25 - 1.1 * smoothStep(time, 0.5, 3.5), 0}, {0, 1, 0}, 0};
+                                 }});
+}
+
+// Sheets that lie above one another, each turned a little.
+void addSheets(const ClothSceneSize& size, double height, ClothScene& scene)
+{
+    const int nodes = 16 * size.m_detail + 1;
+    for (int i = 0; i < size.m_sheets; ++i)
+    {
+        SceneCloth sheet = flatCloth(nodes, nodes, 1.2);
+        turnLevel(sheet, 0.12 * i);
+        shift(sheet, {0, height + kLayerGap * scene.m_thickness * i, 0});
+        scene.m_cloths.push_back(sheet);
+    }
+}
+
+void sheetsOnSphere(const ClothSceneSize& size, ClothScene& scene)
+{
+    scene.m_thickness = 0.01;
+    scene.m_seconds = 3;
+    addSheets(size, 0.42, scene);
+    scene.m_obstacles.push_back({makeSphere(0.4f, 4), nullptr});
+}
+
+void sheetsOnCylinder(const ClothSceneSize& size, ClothScene& scene)
+{
+    scene.m_thickness = 0.01;
+    scene.m_seconds = 3;
+    addSheets(size, 0.27, scene);
+    scene.m_obstacles.push_back({makeCylinder(0.25, 1.6, 0.05, 48), standing({0, 0, 0}, {1, 0, 0}, kPi / 2)});
+}
+
+// A roll of cloth that rolls down a ramp and unrolls.
+void roll(const ClothSceneSize& size, ClothScene& scene)
+{
+    constexpr double kInner = 0.04, kTurns = 5, kSlope = 0.25;
+    scene.m_thickness = 0.006;
+    scene.m_seconds = 4;
+    const double gap = kLayerGap * scene.m_thickness;
+    const Polyline curve = spiral(kInner, gap, kTurns);
+    const int nodes = 96 * size.m_detail + 1;
+    SceneCloth cloth = flatCloth(nodes, 12 * size.m_detail + 1, lengthOf(curve));
+    cloth.m_positions = placeAlong(cloth.m_rest, nodes, curve, {0, 0, 1});
+    shift(cloth, {0, kInner + gap * kTurns + scene.m_thickness, 0});
+    scene.m_cloths.push_back(cloth);
+    scene.m_obstacles.push_back(
+        {makeBox(8, 0.2f, 2), standing({-0.1 * std::sin(kSlope), -0.1 * std::cos(kSlope), 0}, {0, 0, 1}, -kSlope)});
+}
+
+// Two strips in a reef knot, pulled tight at their four ends.
+void knot(const ClothSceneSize& size, ClothScene& scene)
+{
+    constexpr double kPull = 0.9;
+    scene.m_thickness = 0.004;
+    scene.m_seconds = 4;
+    // One strand's half: from its end past the other's bend, down through the other loop, and out around its legs.
+    const Polyline half = {{1.2, 0.09, 0.10},   {0.55, 0.09, 0.10},  {0.36, 0.09, 0.06},  {0.22, 0.10, -0.06},
+                           {0.06, 0.17, -0.12}, {-0.1, 0.26, -0.02}, {-0.24, 0.22, 0.10}, {-0.33, 0.1, 0.14}};
+    Polyline points = half;
+    for (auto point = half.rbegin(); point != half.rend(); ++point)
+        points.push_back({point->x, -point->y, point->z});
+    const Polyline curve = smoothCurve(points, 12);
+    const int nodes = 160 * size.m_detail + 1, rows = 3 * size.m_detail + 1;
+    for (const double side : {1.0, -1.0})
+    {
+        Polyline own = curve;
+        for (Vector3& point : own)
+            point = {side * point.x, point.y, side * point.z};
+        SceneCloth strip = flatCloth(nodes, rows, lengthOf(curve));
+        strip.m_positions = placeAlong(strip.m_rest, nodes, own, {0, 0, 1});
+        hold(strip, [](const Vector3& at) { return std::abs(at.x) > 1.19; });
+        scene.m_cloths.push_back(strip);
+    }
+    const double seconds = scene.m_seconds;
+    scene.m_heldAt = [seconds](std::size_t, const Vector3& start, double time)
+    {
+        const double pulled = kPull * smoothStep(time, 0, seconds);
+        return Vector3{start.x + (start.x > 0 ? pulled : -pulled), start.y, start.z};
+    };
+}
+
+// A towel folded to eight layers that lies on a table.
+void towel(const ClothSceneSize& size, ClothScene& scene)
+{
+    constexpr double kWidth = 0.4;
+    scene.m_thickness = 0.006;
+    scene.m_seconds = 3;
+    const Polyline curve = zigzag(kWidth, kLayerGap * scene.m_thickness, 8);
+    const int nodes = 128 * size.m_detail + 1;
+    SceneCloth cloth = flatCloth(nodes, 16 * size.m_detail + 1, lengthOf(curve));
+    cloth.m_positions = placeAlong(cloth.m_rest, nodes, curve, {0, 0, 1});
+    shift(cloth, {0, kLayerGap * scene.m_thickness, 0});
+    scene.m_cloths.push_back(cloth);
+    scene.m_obstacles.push_back(table(2));
+}
+
+// A dress on a trunk, with an arm that presses it to the trunk's side.
+void dressed(const ClothSceneSize& size, ClothScene& scene)
+{
+    constexpr double kTrunk = 0.16, kArm = 0.05, kDress = 0.2, kLength = 0.9;
+    scene.m_thickness = 0.008;
+    scene.m_seconds = 4;
+    SceneCloth dress;
+    dress.m_rest = makeClothTube(32 * size.m_detail, 24 * size.m_detail + 1, float(kDress), float(kLength));
+    dress.m_positions = dress.m_rest.m_mesh.m_positions;
+    dress.m_mass = kAreaMass * 2 * kPi * kDress * kLength;
+    hold(dress, [](const Vector3& at) { return at.y > 0.4999 * kLength; });
+    scene.m_cloths.push_back(dress);
+    scene.m_obstacles.push_back({makeCapsule(kTrunk, 1.2, 32), nullptr});
+    scene.m_obstacles.push_back({makeCapsule(kArm, 0.5, 24), [](double time)
+                                 {
+                                     const double away = 0.12 * (1 - smoothStep(time, 0.5, 2) + smoothStep(time, 3, 4));
+                                     return ScenePose{{kTrunk + kArm + 0.02 + away, 0, 0}, {0, 1, 0}, 0};
+                                 }});
+    scene.m_heldAt = [](std::size_t, const Vector3& start, double) { return start; };
+}
+
+// A cape on the shoulders of a figure that walks.
+void cape(const ClothSceneSize& size, ClothScene& scene)
+{
+    constexpr double kPace = 1.2, kStride = 0.5, kLift = 0.03;
+    scene.m_thickness = 0.01;
+    scene.m_seconds = 5;
+    const auto at = [](double time)
+    {
+        const double way = time < 1 ? 0.5 * kPace * time * time : kPace * (time - 0.5);
+        return Vector3{way, kLift * std::sin(4 * kPi * time) * std::min(1.0, time), 0};
+    };
+    SceneCloth cloth = flatCloth(24 * size.m_detail + 1, 18 * size.m_detail + 1, 1.2);
+    hang(cloth);
+    shift(cloth, {-0.2, 0.85, 0});
+    hold(cloth, [](const Vector3& node) { return node.y > 1.4499 && std::abs(node.z) < 0.3; });
+    scene.m_cloths.push_back(cloth);
+    scene.m_obstacles.push_back({makeCapsule(0.15, 0.5, 32), [at](double time) {
+                                     return ScenePose{at(time) + Vector3{0, 1.2, 0}, {0, 1, 0}, 0};
+                                 }});
+    for (const double side : {1.0, -1.0})
+    {
+        const auto swing = [at, side](double time)
+        {
+            const double angle = side * kStride * std::sin(2 * kPi * time) * std::min(1.0, time);
+            const Vector3 hip = at(time) + Vector3{0, 0.85, 0.1 * side};
+            return ScenePose{hip + Vector3{0.4 * std::sin(angle), -0.4 * std::cos(angle), 0}, {0, 0, 1}, angle};
+        };
+        scene.m_obstacles.push_back({makeCapsule(0.07, 0.66, 24), swing});
+    }
+    scene.m_heldAt = [at](std::size_t, const Vector3& start, double time) { return start + at(time); };
+}
+
+// A strip that two rollers draw in and wring.
+void wringer(const ClothSceneSize& size, ClothScene& scene)
+{
+    constexpr double kRadius = 0.1, kTurn = 1.5;  // rad/s
+    scene.m_thickness = 0.006;
+    scene.m_seconds = 4;
+    SceneCloth cloth = flatCloth(32 * size.m_detail + 1, 16 * size.m_detail + 1, 0.8);
+    hang(cloth);
+    shift(cloth, {0, 0.35, 0});
+    scene.m_cloths.push_back(cloth);
+    // Room for two layers at the resting distance, and a little more.
+    const double apart = kRadius + 1.6 * scene.m_thickness;
+    for (const double side : {1.0, -1.0})
+    {
+        // The axis is first laid along z; a turn about it is a turn about z in the world.
+        TriangleMesh roller = makeCylinder(kRadius, 0.7, 0.02, 48);
+        for (std::size_t i = 0; i < roller.m_positions.size(); i += 3)
+        {
+            const float y = roller.m_positions[i + 1];
+            roller.m_positions[i + 1] = -roller.m_positions[i + 2];
+            roller.m_positions[i + 2] = y;
+        }
+        scene.m_obstacles.push_back({roller, [=](double time) {
+                                         return ScenePose{{side * apart, 0, 0}, {0, 0, 1}, side * kTurn * time};
+                                     }});
+    }
+}
+
+struct NamedScene
+{
+    const char* m_name;
+    void (*m_make)(const ClothSceneSize& size, ClothScene& scene);
+};
+
+constexpr NamedScene kScenes[] = {{"twist", twist},
+                                  {"funnel", funnel},
+                                  {"sheets_on_sphere", sheetsOnSphere},
+                                  {"sheets_on_cylinder", sheetsOnCylinder},
+                                  {"roll", roll},
+                                  {"knot", knot},
+                                  {"towel", towel},
+                                  {"dressed", dressed},
+                                  {"cape", cape},
+                                  {"wringer", wringer}};
+
+// Displaces each cloth, and a little each node that is not held.
+void displace(ClothScene& scene, std::uint32_t seed)
+{
+    Random random(seed);
+    for (SceneCloth& cloth : scene.m_cloths)
+    {
+        const double most = 0.1 * scene.m_thickness, least = 0.02 * scene.m_thickness;
+        const Vector3 all = {random.within(-most, most), random.within(0, most), random.within(-most, most)};
+        if (cloth.m_held.empty()) shift(cloth, all);
+        std::vector<unsigned char> isHeld(cloth.m_positions.size() / 3);
+        for (const int node : cloth.m_held)
+            isHeld[std::size_t(node)] = 1;
+        for (std::size_t i = 0; i < cloth.m_positions.size(); ++i)
+            if (!isHeld[i / 3]) cloth.m_positions[i] += float(random.within(-least, least));
+    }
+}
+}  // namespace
+
+const std::vector<std::string>& clothSceneNames()
+{
+    static const std::vector<std::string> names = []
+    {
+        std::vector<std::string> all;
+        for (const NamedScene& scene : kScenes)
+            all.emplace_back(scene.m_name);
+        return all;
+    }();
+    return names;
+}
+
+bool makeClothScene(const std::string& name, const ClothSceneSize& size, std::uint32_t seed, ClothScene& scene)
+{
+    const auto found = std::find_if(std::begin(kScenes), std::end(kScenes),
+                                    [&](const NamedScene& known) { return name == known.m_name; });
+    if (found == std::end(kScenes)) return false;
+    scene = ClothScene();
+    scene.m_name = name;
+    found->m_make(size, scene);
+    displace(scene, seed);
+    return true;
+}
+}  // namespace drape
