@@ -183,6 +183,34 @@ TEST(SelfCollision, BulletsFiltersKeepBodiesFromMeeting)
     EXPECT_EQ(layers.m_status, std::uint32_t(kStepGood)) << statusText(layers.m_status);
 }
 
+// The lower sheet is pinned. Gravity leans, which is equivalent to a slope.
+TEST(SelfCollision, ASheetSlidesOverAnotherAtTheSpeedThatFrictionLeaves)
+{
+    constexpr double kGravity = 9.81, kAngle = 0.3;
+    for (const double friction : {0.0, 0.1, 0.2, 0.5})
+    {
+        Layers layers(hostSettings(), 2, 0.02f);
+        for (btSoftBody* cloth : layers.m_cloths)
+            cloth->m_cfg.kDF = btScalar(friction);
+        for (int i = 0; i < layers.m_cloths[0]->m_nodes.size(); ++i)
+            layers.m_cloths[0]->setMass(i, 0);
+        const btVector3 gravity(btScalar(kGravity * std::sin(kAngle)), btScalar(-kGravity * std::cos(kAngle)), 0);
+        layers.m_world.world().setGravity(gravity);
+        layers.m_world.world().getWorldInfo().m_gravity = gravity;
+        const std::vector<float> before = positionsOf(*layers.m_cloths[1]);
+        constexpr int kSteps = 20;
+        layers.m_world.step(kSteps);
+        const std::vector<float> after = positionsOf(*layers.m_cloths[1]);
+        double way = 0;
+        for (std::size_t i = 0; i < before.size(); i += 3)
+            way += 3 * (double(after[i]) - double(before[i])) / double(before.size());
+        const double time = kSteps * double(kDt);
+        const double right =
+            0.5 * kGravity * std::max(0.0, std::sin(kAngle) - friction * std::cos(kAngle)) * time * time;
+        EXPECT_NEAR(way, right, 0.02 * right + 1e-4) << friction;
+    }
+}
+
 namespace
 {
 // Two sheets of which one leans through the other. Returns the steps after which nothing intersects, or the number of

@@ -135,7 +135,7 @@ public:
     FoundContacts m_found;
     KeptBodies m_kept{*this};
     SelfCollision m_selfCollision;
-    std::vector<ClothPairInfo> m_clothPairs;  // those of the last step
+    std::vector<ClothPairInfo> m_clothPairs;  // see Plugin::clothPairs()
 
 private:
     struct Owned

@@ -12,7 +12,7 @@ constexpr int kMostRounds = 8;
 // Minimum pairs for sharing them among threads, and the pairs of a range.
 constexpr std::size_t kLeastShared = 1024, kRange = 256;
 
-PlanePoint pointAt(const float* positions, std::size_t node)
+Vec3d pointAt(const float* positions, std::size_t node)
 {
     return {positions[3 * node], positions[3 * node + 1], positions[3 * node + 2]};
 }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bullet_plugin/core/vec3d.h"
+
 namespace drape
 {
 namespace
@@ -11,48 +13,11 @@ namespace
 // along itself.
 constexpr double kLeastSine = 0.05;
 
-struct Point
-{
-    double x, y, z;
-};
-
-Point operator+(Point a, Point b)
-{
-    return {a.x + b.x, a.y + b.y, a.z + b.z};
-}
-
-Point operator-(Point a, Point b)
-{
-    return {a.x - b.x, a.y - b.y, a.z - b.z};
-}
-
-Point operator*(double s, Point a)
-{
-    return {s * a.x, s * a.y, s * a.z};
-}
-
-double dot(Point a, Point b)
-{
-    return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-
-Point cross(Point a, Point b)
-{
-    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-
-// Returns the unit vector; 0 for one without a direction.
-Point unit(Point a)
-{
-    const double length = std::sqrt(dot(a, a));
-    return length > 0 ? (1 / length) * a : Point{0, 0, 0};
-}
-
 // A triangle's nodes and their positions.
 struct Face
 {
     const std::uint32_t* m_nodes;
-    Point m_p[3];
+    Vec3d m_p[3];
 
     Face(const std::uint32_t* nodes, const float* positions) : m_nodes(nodes)
     {
@@ -62,11 +27,11 @@ struct Face
             m_p[k] = {p[0], p[1], p[2]};
         }
     }
-    Point normal() const { return unit(cross(m_p[1] - m_p[0], m_p[2] - m_p[0])); }
+    Vec3d normal() const { return unit(cross(m_p[1] - m_p[0], m_p[2] - m_p[0])); }
 };
 
 // Returns whether a point of the triangle's plane is in it.
-bool contains(const Face& face, Point normal, Point at)
+bool contains(const Face& face, Vec3d normal, Vec3d at)
 {
     for (int k = 0; k < 3; ++k)
         if (dot(cross(face.m_p[(k + 1) % 3] - face.m_p[k], at - face.m_p[k]), normal) < 0) return false;
@@ -80,7 +45,7 @@ void ContourPush::compute(const std::vector<std::uint32_t>& pairs, const float* 
     m_displacements.clear();
     if (pairs.empty()) return;
     m_displacements.assign(3 * isHeld.size(), 0.0);
-    const auto add = [&](std::uint32_t node, Point by)
+    const auto add = [&](std::uint32_t node, Vec3d by)
     {
         double* const sum = m_displacements.data() + 3 * std::size_t(node);
         sum[0] += by.x;
@@ -90,20 +55,20 @@ void ContourPush::compute(const std::vector<std::uint32_t>& pairs, const float* 
     // Shortens the part of the curve that begins where an edge of one triangle pierces the other.
     const auto push = [&](const Face& own, const Face& other)
     {
-        const Point across = own.normal(), normal = other.normal();
+        const Vec3d across = own.normal(), normal = other.normal();
         for (int k = 0; k < 3; ++k)
         {
-            const Point first = own.m_p[k], second = own.m_p[(k + 1) % 3], third = own.m_p[(k + 2) % 3];
+            const Vec3d first = own.m_p[k], second = own.m_p[(k + 1) % 3], third = own.m_p[(k + 2) % 3];
             const double d0 = dot(first - other.m_p[0], normal), d1 = dot(second - other.m_p[0], normal);
             if (!(d0 * d1 < 0)) continue;
             const double share = d0 / (d0 - d1);
-            const Point at = first + share * (second - first), edge = unit(second - first);
+            const Vec3d at = first + share * (second - first), edge = unit(second - first);
             if (!contains(other, normal, at)) continue;
-            Point along = unit(cross(across, normal));
+            Vec3d along = unit(cross(across, normal));
             if (dot(along, cross(cross(edge, third - first), edge)) < 0) along = -1.0 * along;
             const double sine = dot(edge, normal);
             const double steep = std::copysign(std::max(std::abs(sine), kLeastSine), sine);
-            const Point way = 0.5 * (along - (dot(edge, along) / steep) * normal);
+            const Vec3d way = 0.5 * (along - (dot(edge, along) / steep) * normal);
             add(own.m_nodes[k], way);
             add(own.m_nodes[(k + 1) % 3], way);
             for (int corner = 0; corner < 3; ++corner)

@@ -14,24 +14,9 @@ constexpr double kRounding = 16 * 1.1102230246251565e-16;
 // Share of the free way that a shortened path uses, so that its rounded end stays clear.
 constexpr double kUsedShare = 0.9;
 
-PlanePoint operator-(PlanePoint a, PlanePoint b)
-{
-    return {a.x - b.x, a.y - b.y, a.z - b.z};
-}
-
-PlanePoint along(PlanePoint a, PlanePoint b, double t)
+Vec3d along(Vec3d a, Vec3d b, double t)
 {
     return {a.x + t * (b.x - a.x), a.y + t * (b.y - a.y), a.z + t * (b.z - a.z)};
-}
-
-double dot(PlanePoint a, PlanePoint b)
-{
-    return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-
-PlanePoint cross(PlanePoint a, PlanePoint b)
-{
-    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
 // The position of a point along a normal, and a bound on its rounding.
@@ -40,9 +25,9 @@ struct Height
     double m_value, m_error;
 };
 
-Height heightOf(PlanePoint normal, PlanePoint origin, PlanePoint p)
+Height heightOf(Vec3d normal, Vec3d origin, Vec3d p)
 {
-    const PlanePoint d = p - origin;
+    const Vec3d d = p - origin;
     const double size = std::fabs(normal.x * d.x) + std::fabs(normal.y * d.y) + std::fabs(normal.z * d.z);
     return {dot(normal, d), kRounding * size};
 }
@@ -53,21 +38,21 @@ double clampShare(double t)
 }
 
 // Returns the offset from the nearest point of a segment to p.
-PlanePoint offsetFromSegment(PlanePoint p, PlanePoint a, PlanePoint b)
+Vec3d offsetFromSegment(Vec3d p, Vec3d a, Vec3d b)
 {
-    const PlanePoint edge = b - a;
+    const Vec3d edge = b - a;
     const double length2 = dot(edge, edge);
     return p - along(a, b, length2 > 0 ? clampShare(dot(p - a, edge) / length2) : 0);
 }
 
-PlanePoint shorter(PlanePoint a, PlanePoint b)
+Vec3d shorter(Vec3d a, Vec3d b)
 {
     return dot(b, b) < dot(a, a) ? b : a;
 }
 
-PlanePoint offsetFromFace(PlanePoint p, const PlanePoint f[3])
+Vec3d offsetFromFace(Vec3d p, const Vec3d f[3])
 {
-    const PlanePoint normal = cross(f[1] - f[0], f[2] - f[0]);
+    const Vec3d normal = cross(f[1] - f[0], f[2] - f[0]);
     const double area2 = dot(normal, normal);
     bool inside = area2 > 0;
     for (int i = 0; i < 3; ++i)
@@ -82,16 +67,16 @@ PlanePoint offsetFromFace(PlanePoint p, const PlanePoint f[3])
 }
 
 // Returns the offset between the nearest points of two segments, from the second to the first.
-PlanePoint offsetOfSegments(const PlanePoint p[2], const PlanePoint q[2])
+Vec3d offsetOfSegments(const Vec3d p[2], const Vec3d q[2])
 {
-    const PlanePoint u = p[1] - p[0], v = q[1] - q[0], w = p[0] - q[0];
+    const Vec3d u = p[1] - p[0], v = q[1] - q[0], w = p[0] - q[0];
     const double a = dot(u, u), b = dot(u, v), c = dot(v, v), d = dot(u, w), e = dot(v, w);
     const double area2 = a * c - b * b;
-    PlanePoint best = offsetFromSegment(p[0], q[0], q[1]);
+    Vec3d best = offsetFromSegment(p[0], q[0], q[1]);
     best = shorter(best, offsetFromSegment(p[1], q[0], q[1]));
     for (int i = 0; i < 2; ++i)
     {
-        const PlanePoint offset = offsetFromSegment(q[i], p[0], p[1]);
+        const Vec3d offset = offsetFromSegment(q[i], p[0], p[1]);
         best = shorter(best, {-offset.x, -offset.y, -offset.z});
     }
     if (!(area2 > 0)) return best;
@@ -99,7 +84,7 @@ PlanePoint offsetOfSegments(const PlanePoint p[2], const PlanePoint q[2])
     return s > 0 && s < 1 && t > 0 && t < 1 ? shorter(best, along(p[0], p[1], s) - along(q[0], q[1], t)) : best;
 }
 
-PlanePoint offsetOf(const PlanePoint nodes[4], int split)
+Vec3d offsetOf(const Vec3d nodes[4], int split)
 {
     return split == 1 ? offsetFromFace(nodes[0], nodes + 1) : offsetOfSegments(nodes, nodes + 2);
 }
@@ -107,7 +92,7 @@ PlanePoint offsetOf(const PlanePoint nodes[4], int split)
 // The heights of a pair's nodes along a normal.
 struct Sides
 {
-    PlanePoint m_normal;
+    Vec3d m_normal;
     Height m_start[4], m_end[4];
     double m_lowest, m_highest;  // certain bounds of the first feature's start, and of the second's
     double m_low, m_high;        // bounds of the plane that held nodes leave
@@ -115,7 +100,7 @@ struct Sides
     double gap() const { return m_lowest - m_highest; }
 };
 
-Sides sidesOf(const FeaturePaths& paths, PlanePoint normal)
+Sides sidesOf(const FeaturePaths& paths, Vec3d normal)
 {
     Sides sides = {normal, {}, {}, HUGE_VAL, -HUGE_VAL, 0, 0};
     for (int i = 0; i < 4; ++i)
@@ -157,20 +142,12 @@ double endGap(const Sides& sides, int split)
     return lowest - highest;
 }
 
-// Returns the unit vector; zeros if there is none.
-PlanePoint unit(PlanePoint v)
-{
-    const double length = std::sqrt(dot(v, v));
-    if (!(length > 0) || !std::isfinite(length)) return {0, 0, 0};
-    return {v.x / length, v.y / length, v.z / length};
-}
-
 // Normals to try, in this order: between the nearest points at the start and at the end, across both features.
-std::array<PlanePoint, 4> normalsFor(const FeaturePaths& paths)
+std::array<Vec3d, 4> normalsFor(const FeaturePaths& paths)
 {
-    const PlanePoint* p = paths.m_start;
-    const PlanePoint across = paths.m_split == 1 ? cross(p[2] - p[1], p[3] - p[1]) : cross(p[1] - p[0], p[3] - p[2]);
-    const PlanePoint normal = unit(across);
+    const Vec3d* p = paths.m_start;
+    const Vec3d across = paths.m_split == 1 ? cross(p[2] - p[1], p[3] - p[1]) : cross(p[1] - p[0], p[3] - p[2]);
+    const Vec3d normal = unit(across);
     return {unit(offsetOf(paths.m_start, paths.m_split)),
             unit(offsetOf(paths.m_end, paths.m_split)),
             normal,
@@ -193,14 +170,14 @@ double approachOf(const Sides& sides, const FeaturePaths& paths, bool first)
 double separationOf(const FeaturePaths& paths)
 {
     double most = 0;
-    for (const PlanePoint& normal : normalsFor(paths))
+    for (const Vec3d& normal : normalsFor(paths))
         most = std::max(most, sidesOf(paths, normal).gap());
     return most / (1 + kRounding);  // the normal's length
 }
 
 bool stayApart(const FeaturePaths& paths, double clearance)
 {
-    for (const PlanePoint& normal : normalsFor(paths))
+    for (const Vec3d& normal : normalsFor(paths))
     {
         const Sides sides = sidesOf(paths, normal);
         if (sides.gap() > 0 && endGap(sides, paths.m_split) >= std::min(2 * clearance, sides.gap())) return true;
@@ -212,7 +189,7 @@ SeparatingPlane separatingPlane(const FeaturePaths& paths, double clearance)
 {
     Sides best = {};
     bool found = false, leaves = false;
-    for (const PlanePoint& normal : normalsFor(paths))
+    for (const Vec3d& normal : normalsFor(paths))
     {
         const Sides sides = sidesOf(paths, normal);
         if (!(sides.gap() > 0)) continue;
@@ -240,7 +217,7 @@ SeparatingPlane separatingPlane(const FeaturePaths& paths, double clearance)
     return plane;
 }
 
-bool staysClear(const SeparatingPlane& plane, const FeaturePaths& paths, int node, PlanePoint position)
+bool staysClear(const SeparatingPlane& plane, const FeaturePaths& paths, int node, Vec3d position)
 {
     const Height height = heightOf(plane.m_normal, plane.m_origin, position);
     const double sign = node < paths.m_split ? 1 : -1;

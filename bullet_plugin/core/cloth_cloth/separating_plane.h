@@ -9,29 +9,26 @@
 // precision; offsets from a node of the pair, so that errors grow with the pair's size and not with its position.
 #pragma once
 
+#include "bullet_plugin/core/vec3d.h"
+
 namespace drape
 {
-struct PlanePoint
-{
-    double x, y, z;
-};
-
 // The first m_split nodes are the first feature's, the others the second's: 1 and 3, or 2 and 2.
 struct FeaturePaths
 {
-    PlanePoint m_start[4], m_end[4];  // m
-    bool m_isHeld[4];                 // nodes whose paths cannot be shortened
+    Vec3d m_start[4], m_end[4];  // m
+    bool m_isHeld[4];            // nodes whose paths cannot be shortened
     int m_split;
 };
 
 struct SeparatingPlane
 {
-    PlanePoint m_normal;  // towards the first feature
-    PlanePoint m_origin;  // m
-    double m_offset;      // m, of the plane along the normal from the origin
-    double m_clear[4];    // m, distance from the plane that each node keeps
-    bool m_isCertified;   // the features start apart; without it nothing else is valid
-    bool m_leavesHeld;    // held nodes end on their sides
+    Vec3d m_normal;      // towards the first feature
+    Vec3d m_origin;      // m
+    double m_offset;     // m, of the plane along the normal from the origin
+    double m_clear[4];   // m, distance from the plane that each node keeps
+    bool m_isCertified;  // the features start apart; without it nothing else is valid
+    bool m_leavesHeld;   // held nodes end on their sides
 };
 
 // Returns how far features start apart, m; a lower bound, at most the true distance. 0 if they meet, or if no plane
@@ -47,7 +44,7 @@ bool stayApart(const FeaturePaths& paths, double clearance);
 SeparatingPlane separatingPlane(const FeaturePaths& paths, double clearance);
 
 // Returns whether the position is surely on the node's side of the plane, as far away as the plane demands.
-bool staysClear(const SeparatingPlane& plane, const FeaturePaths& paths, int node, PlanePoint position);
+bool staysClear(const SeparatingPlane& plane, const FeaturePaths& paths, int node, Vec3d position);
 
 // Returns the share of its path, 0 to 1, up to which a node stays clear; a little less where it would not to the end.
 double clearShare(const SeparatingPlane& plane, const FeaturePaths& paths, int node);

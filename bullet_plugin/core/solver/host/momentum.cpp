@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "bullet_plugin/core/solver/rigid_rows.h"
+#include "bullet_plugin/core/vec3d.h"
 #include "substeps.h"
 
 namespace drape
@@ -16,46 +17,6 @@ constexpr double kMostEnergy = 0.01;
 
 // Share of the trace that is added to the moments of inertia: those of a rope about its own line are 0.
 constexpr double kSoftening = 1e-6;
-
-struct Vec3d
-{
-    double x = 0, y = 0, z = 0;
-};
-
-Vec3d wide(Vec3 v)
-{
-    return {double(v.x), double(v.y), double(v.z)};
-}
-
-Vec3 narrow(Vec3d v)
-{
-    return vec3(float(v.x), float(v.y), float(v.z));
-}
-
-Vec3d operator+(Vec3d a, Vec3d b)
-{
-    return {a.x + b.x, a.y + b.y, a.z + b.z};
-}
-
-Vec3d operator-(Vec3d a, Vec3d b)
-{
-    return {a.x - b.x, a.y - b.y, a.z - b.z};
-}
-
-Vec3d operator*(double s, Vec3d v)
-{
-    return {s * v.x, s * v.y, s * v.z};
-}
-
-Vec3d cross(Vec3d a, Vec3d b)
-{
-    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-
-double dot(Vec3d a, Vec3d b)
-{
-    return a.x * b.x + a.y * b.y + a.z * b.z;
-}
 
 // Shares that damping leaves at the step's end.
 struct Kept
