@@ -23,6 +23,6 @@ struct ClothGrid
 ClothGrid makeClothGrid(int columns, int rows, float size, float y);
 
 // Makes a tube of `around` (≥ 5) × rows (≥ 3) nodes around y, half of its height below y = 0. Normals point outwards.
-// Springs as above.
+// Springs join the same neighbours as in the flat cloth, all around.
 ClothGrid makeClothTube(int around, int rows, float radius, float height);
 }  // namespace drape

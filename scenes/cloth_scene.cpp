@@ -162,16 +162,18 @@ void roll(const ClothSceneSize& size, ClothScene& scene)
 // Two strips in a reef knot, pulled tight at their four ends.
 void knot(const ClothSceneSize& size, ClothScene& scene)
 {
-    constexpr double kPull = 0.9;
+    constexpr double kEnd = 1.2, kTightened = 0.8;
     scene.m_thickness = 0.004;
     scene.m_seconds = 4;
     // One strand's half: from its end past the other's bend, down through the other loop, and out around its legs.
-    const Polyline half = {{1.2, 0.09, 0.10},   {0.55, 0.09, 0.10},  {0.36, 0.09, 0.06},  {0.22, 0.10, -0.06},
+    const Polyline half = {{kEnd, 0.09, 0.10},  {0.55, 0.09, 0.10},  {0.36, 0.09, 0.06},  {0.22, 0.10, -0.06},
                            {0.06, 0.17, -0.12}, {-0.1, 0.26, -0.02}, {-0.24, 0.22, 0.10}, {-0.33, 0.1, 0.14}};
     Polyline points = half;
     for (auto point = half.rbegin(); point != half.rend(); ++point)
         points.push_back({point->x, -point->y, point->z});
     const Polyline curve = smoothCurve(points, 12);
+    // A strip whose two legs were straight would reach half of its length.
+    const double slack = lengthOf(curve) / 2 - kEnd;
     const int nodes = 160 * size.m_detail + 1, rows = 3 * size.m_detail + 1;
     for (const double side : {1.0, -1.0})
     {
@@ -180,13 +182,13 @@ void knot(const ClothSceneSize& size, ClothScene& scene)
             point = {side * point.x, point.y, side * point.z};
         SceneCloth strip = flatCloth(nodes, rows, lengthOf(curve));
         strip.m_positions = placeAlong(strip.m_rest, nodes, own, {0, 0, 1});
-        hold(strip, [](const Vector3& at) { return std::abs(at.x) > 1.19; });
+        hold(strip, [](const Vector3& at) { return std::abs(at.x) > 0.99 * kEnd; });
         scene.m_cloths.push_back(strip);
     }
     const double seconds = scene.m_seconds;
-    scene.m_heldAt = [seconds](std::size_t, const Vector3& start, double time)
+    scene.m_heldAt = [seconds, slack](std::size_t, const Vector3& start, double time)
     {
-        const double pulled = kPull * smoothStep(time, 0, seconds);
+        const double pulled = kTightened * slack * smoothStep(time, 0, seconds);
         return Vector3{start.x + (start.x > 0 ? pulled : -pulled), start.y, start.z};
     };
 }

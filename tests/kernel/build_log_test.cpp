@@ -50,7 +50,7 @@ std::string buildLog(Device& device, const cl::Program& program)
 
 // Returns whether a log names a warning. Drivers also log remarks and figures of kernels, which are none. NVIDIA's
 // compiler says of every kernel with a fixed group size that it may be inlined. Clang says of every function with wide
-// vectors on a CPU without AVX-512 that it is called another way than with it; no kernel is called from outside.
+// vectors on a CPU without AVX-512 that callers with AVX-512 call it otherwise; a program has no such callers.
 bool namesWarning(const std::string& log)
 {
     std::istringstream lines(log);

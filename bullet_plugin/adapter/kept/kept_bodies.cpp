@@ -141,14 +141,18 @@ void KeptBodies::takeNodes(const btSoftBody& body)
 
 void KeptBodies::forgetRemoved(const btSoftBodySolver* solver, const btAlignedObjectArray<btSoftBody*>& bodies)
 {
+    const auto isRemoved = [&](const auto& entry)
+    {
+        return entry.second.m_solver == solver &&
+               bodies.findLinearSearch(const_cast<btSoftBody*>(entry.first)) == bodies.size();
+    };
     for (auto entry = m_bodies.begin(); entry != m_bodies.end();)
     {
-        const int count = bodies.size();
-        const bool isRemoved =
-            entry->second.m_solver == solver && bodies.findLinearSearch(const_cast<btSoftBody*>(entry->first)) == count;
-        if (isRemoved) freeRoom(entry->second);
-        entry = isRemoved ? m_bodies.erase(entry) : std::next(entry);
+        if (isRemoved(*entry)) freeRoom(entry->second);
+        entry = isRemoved(*entry) ? m_bodies.erase(entry) : std::next(entry);
     }
+    for (auto entry = m_supports.begin(); entry != m_supports.end();)
+        entry = isRemoved(*entry) ? m_supports.erase(entry) : std::next(entry);
 }
 
 void KeptBodies::release(btSoftBody& body)
@@ -211,6 +215,7 @@ bool KeptBodies::fetch(btSoftBody& body)
     m_state.leaveNodeTree(body);
     for (std::size_t k = 0; k < kept->m_pins.size(); ++k)
         kept->m_pinnedAt[k] = body.m_nodes[kept->m_pins[k]].m_x;
+    takeSupports(body, *kept, nodes);
     return true;
 }
 
@@ -304,9 +309,6 @@ void KeptBodies::bringToHost(btSoftBody& body)
     const KeptNode* const nodes = read(kept);
     kept.m_isOnDevice = kept.m_isBegun = false;
     if (!nodes) return;
-    kept.m_supports.resize(kept.m_count);
-    for (std::size_t i = 0; i < kept.m_count; ++i)
-        kept.m_supports[i] = nodes[i].m_support;
     std::size_t pin = 0;
     for (int i = 0; i < countOf(body, kept.m_count); ++i)
     {
@@ -321,6 +323,15 @@ void KeptBodies::bringToHost(btSoftBody& body)
         node.m_v = vectorOf(nodes[i].m_velocity);
     }
     if (!isPlain(body)) body.updateNormals();  // for Bullet's prediction
+    takeSupports(body, kept, nodes);
+}
+
+void KeptBodies::takeSupports(const btSoftBody& body, const Kept& kept, const KeptNode* nodes)
+{
+    std::vector<Vec3>& values = m_supports[&body].m_values;
+    values.resize(kept.m_count);
+    for (std::size_t i = 0; i < kept.m_count; ++i)
+        values[i] = nodes[i].m_support;
 }
 
 bool KeptBodies::hadPair(const btSoftBody& body) const
@@ -331,10 +342,12 @@ bool KeptBodies::hadPair(const btSoftBody& body) const
 
 void KeptBodies::giveSupports(const btSoftBody& body, SubstepBody* substeps)
 {
-    Kept* const kept = find(body);
-    if (!kept || kept->m_supports.empty()) return;
-    if (substeps) substeps->setSupports(kept->m_supports);
-    kept->m_supports.clear();
+    const auto found = m_supports.find(&body);
+    if (found == m_supports.end()) return;
+    std::vector<Vec3>& values = found->second.m_values;
+    if (substeps && !values.empty()) substeps->setSupports(values);
+    values.clear();
+    if (!find(body)) m_supports.erase(found);
 }
 
 void KeptBodies::store(btSoftBody& body, Kept& kept, const SubstepBody* substeps)
@@ -345,6 +358,9 @@ void KeptBodies::store(btSoftBody& body, Kept& kept, const SubstepBody* substeps
         kept.m_count = static_cast<std::size_t>(body.m_nodes.size());
         kept.m_id = stage()->kept().add(kept.m_count);
     }
+    Supports& supports = m_supports[&body];
+    supports.m_values.reserve(kept.m_count);
+    supports.m_solver = kept.m_solver;
     std::vector<KeptNode> nodes(kept.m_count);
     const bool isSupported = substeps && substeps->isSupported() && substeps->supports().size() == nodes.size();
     kept.m_pins.clear();

@@ -68,8 +68,8 @@ public:
     void bringToHost(btSoftBody& body);
     // Returns whether a solver's step had contacts for the body when it was last on the device.
     bool hadPair(const btSoftBody& body) const;
-    // Gives the supports (nodeSupport()) of a body that bringToHost() brought since, once. substeps: null if Bullet
-    // solves the links.
+    // Gives the supports (nodeSupport()) that came with a body's nodes, once. substeps: null if Bullet solves the
+    // links.
     void giveSupports(const btSoftBody& body, SubstepBody* substeps);
     // Ends a step: bodies on the host are stored on the device. hasPair: the step looked for contacts of the body.
     // substeps: the body's; null if the core does not solve it.
@@ -89,10 +89,17 @@ private:
         KeptStep m_step;
         std::vector<int> m_pins;
         std::vector<btVector3> m_pinnedAt;
-        std::vector<Vec3> m_supports;  // by node, for giveSupports(); empty if there are none
-        bool m_isReading = false;      // a transfer was begun
-        bool m_isBringing = false;     // by beginBringing()
+        bool m_isReading = false;   // a transfer was begun
+        bool m_isBringing = false;  // by beginBringing()
         std::size_t m_waitsBefore = 0;
+    };
+
+    // The supports of a body's nodes as the host last got them; empty if they were given. Room for them is made when
+    // the nodes are stored, so that bodies get their nodes without more memory.
+    struct Supports
+    {
+        std::vector<Vec3> m_values;                  // m/s², by node
+        const btSoftBodySolver* m_solver = nullptr;  // the last step's; compared, not followed
     };
 
     Kept* find(const btSoftBody& body);
@@ -102,10 +109,12 @@ private:
     void freeRoom(const Kept& kept);
     void store(btSoftBody& body, Kept& kept, const SubstepBody* substeps);
     const KeptNode* read(Kept& kept);
+    void takeSupports(const btSoftBody& body, const Kept& kept, const KeptNode* nodes);
     bool anyPinMoved(const btSoftBody& body, const Kept& kept) const;
 
     PluginState& m_state;
     bool m_isRetired = false;
     std::unordered_map<const btSoftBody*, Kept> m_bodies;
+    std::unordered_map<const btSoftBody*, Supports> m_supports;  // kept bodies', and released ones' until given
 };
 }  // namespace drape

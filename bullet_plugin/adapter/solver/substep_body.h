@@ -42,7 +42,11 @@ public:
     // prediction, with the same nodes. Allocates no memory.
     void afterPrediction(btSoftBody& body, ThreadTeam* threads);
     // Begins a step whose nodes the device predicts (kept_bodies.h).
-    void predictOnDevice() { m_isPredicted = m_isOnDevice = true; }
+    void predictOnDevice()
+    {
+        m_isPredicted = m_isOnDevice = true;
+        m_isSupported = false;
+    }
     // Returns whether the step has begun so, and the nodes have not come since.
     bool isOnDevice() const { return m_isOnDevice; }
     // Returns how far the end of a path in substeps lies from Bullet's prediction, s²: per unit of acceleration, and of

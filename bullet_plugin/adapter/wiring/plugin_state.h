@@ -135,7 +135,7 @@ public:
     FoundContacts m_found;
     KeptBodies m_kept{*this};
     SelfCollision m_selfCollision;
-    std::vector<ClothPairInfo> m_clothPairs;  // see Plugin::clothPairs()
+    std::vector<ClothPairInfo> m_clothPairs;  // triangles that intersected where the last step began
 
 private:
     struct Owned

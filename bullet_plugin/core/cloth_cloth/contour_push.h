@@ -1,9 +1,10 @@
 // Displacements that bring intersecting triangles of cloth apart, without a record of how they came there.
 //
-// Method: along the curve in which two cloths cut each other, each edge that pierces a triangle goes where the curve
-// gets shorter, and the triangle goes the other way (Volino and Magnenat-Thalmann 2006, Resolving Surface Collisions
-// through Intersection Contour Minimization). A corner that pokes through withdraws; a sheet across another slides off
-// its border. Cloth that closed curves hold, such as a bag through its own side, comes apart slowly or not at all.
+// Method: two cloths cut each other along a curve, which begins and ends where edges pierce triangles. Each such edge
+// goes where the curve gets shorter, and the triangle goes the other way (Volino and Magnenat-Thalmann 2006, Resolving
+// Surface Collisions through Intersection Contour Minimization). A corner that pokes through withdraws; a sheet across
+// another slides off its border. Cloth that closed curves hold, such as a bag through its own side, comes apart slowly
+// or not at all.
 //
 // Double precision, on the host. Cost: linear in the pairs. The same bits everywhere.
 #pragma once

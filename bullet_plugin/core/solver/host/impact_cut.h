@@ -4,9 +4,8 @@
 //
 // Input: nodes at the ends of the paths along which the contacts were found. Before a moving obstacle, a path ends
 // where the obstacle carries it. The rest of the path is lost for the step, as if the node had stopped there; the
-// velocity along the surface can be given back at its end. Cloth
-// that would pass no surface within the step (it rests, slides, or falls by less than the thickness) is not changed.
-// Cost: linear in the contacts.
+// velocity along the surface can be given back at the step's end. Cloth that would pass no surface within the step (it
+// rests, slides, or falls by less than the thickness) is not changed. Cost: linear in the contacts.
 #pragma once
 
 #include <vector>

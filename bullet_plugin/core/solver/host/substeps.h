@@ -1,10 +1,10 @@
 // Moves the nodes of a cloth through a step in substeps of equal length, with its links.
 //
-// A node's path through the step is the parabola from its start to its end under constant acceleration, and under what
-// contacts are expected to add to it. A substep
-// moves every node along its velocity; then constraints correct the positions, and the velocities follow (Macklin et
-// al. 2019, Small Steps in Physics Simulation). Links keep the stiffness that Bullet's iterations give them
-// (link_strength.h). The same bits with any number of threads. Cost: linear in nodes and links.
+// A node's path through the step is the parabola from its start to its end under constant acceleration, which includes
+// what contacts are expected to give. A substep moves every node along its velocity; then constraints correct the
+// positions, and the velocities follow (Macklin et al. 2019, Small Steps in Physics Simulation). Links keep the
+// stiffness that Bullet's iterations give them (link_strength.h). The same bits with any number of threads. Cost:
+// linear in nodes and links.
 #pragma once
 
 #include <cstddef>
