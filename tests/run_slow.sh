@@ -55,6 +55,7 @@ worlds --backend substeps --kind all --count 4000 --most-failing "$plain"
 worlds --backend substeps --kind all --count 4000 --modifiers random --most-failing "${modified:-0}"
 worlds --kind tiny --count 300000 --most-failing "$tiny"
 worlds --kind ropes --count 2000 --most-failing "$ropes"
+worlds --backend substeps --kind loads --count 2000
 worlds --kind skirts --most-failing "$skirts"
 worlds --backend substeps --kind skirts --most-failing "$skirts"
 # Measured: 0.089 mm/s at most.

@@ -31,6 +31,7 @@ bool checkSettings(const Settings& settings, Error& error)
         choice("Settings::m_mode", settings.m_mode, ContactMode::Automatic),
         choice("Settings::m_solver", settings.m_solver, Solver::Bullet),
         choice("Settings::m_solverPlace", settings.m_solverPlace, SolverPlace::Device),
+        choice("Settings::m_dynamicConvex", settings.m_dynamicConvex, DynamicConvex::Bullet),
         {"Settings::m_crossover", settings.m_crossover, !std::isnan(settings.m_crossover), "a number"},
         {"Settings::m_activation", double(settings.m_activation),
          settings.m_activation >= 0.0f && settings.m_activation <= 4.0f, "0 to 4"},

@@ -13,7 +13,12 @@ typedef struct RigidBody
     Vec3 m_inverseMass;         // 1/kg by axis
     Vec3 m_inverseInertia[3];   // rows, 1/(kg m²)
     DRAPE_UINT m_moves;         // false for a static or kinematic body, which does not yield
+    DRAPE_UINT m_follows;       // ends the step where it yields to; else only its velocity yields
+    DRAPE_UINT m_isPushed;      // by cloth in this step, if it follows
     Vec3 m_impulse, m_turning;  // given by cloth in this step, N s, and about the centre of mass, N m s
+    Vec3 m_shift, m_turn;       // by which these move a body that follows until the step's end, m and rad
+    Vec3 m_acceleration;        // m/s², of a body that follows: what its forces added to its velocity in the step
+    Vec3 m_displaced;           // m/s, of a body that follows: what its motion in the step has beside its velocity
 } RigidBody;
 
 // A plane of a rigid body beside a node.

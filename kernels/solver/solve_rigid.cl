@@ -28,6 +28,7 @@ static RigidSubstep openRun(const SolveLayout* layout, const RigidLayout* rigid,
     opened.m_time = cloth->m_substepTime;
     opened.m_perCorrection = cloth->m_perCorrection;
     opened.m_passed = (float)(substep + 1) / (float)cloth->m_substeps;
+    opened.m_left = rigidLeft(opened.m_time, cloth->m_substeps, substep);
     return opened;
 }
 

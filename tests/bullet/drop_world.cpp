@@ -204,6 +204,28 @@ bool sameContacts(const std::vector<ContactInfo>& a, const std::vector<ContactIn
                                               { return std::memcmp(&one, &other, sizeof one) == 0; });
 }
 
+btVector3 linearMomentumOf(const btSoftBody& cloth)
+{
+    btVector3 sum(0, 0, 0);
+    for (int i = 0; i < cloth.m_nodes.size(); ++i)
+        if (cloth.m_nodes[i].m_im > 0) sum += cloth.m_nodes[i].m_v / cloth.m_nodes[i].m_im;
+    return sum;
+}
+
+btVector3 angularMomentumOf(const btSoftBody& cloth)
+{
+    btVector3 sum(0, 0, 0);
+    for (int i = 0; i < cloth.m_nodes.size(); ++i)
+        sum += cloth.m_nodes[i].m_x.cross(cloth.m_nodes[i].m_v) / cloth.m_nodes[i].m_im;
+    return sum;
+}
+
+btVector3 angularMomentumOf(const btRigidBody& body)
+{
+    return body.getWorldTransform().getOrigin().cross(body.getLinearVelocity()) / body.getInvMass() +
+           body.getInvInertiaTensorWorld().inverse() * body.getAngularVelocity();
+}
+
 int contactsHeld(const btSoftBody& cloth)
 {
     return cloth.m_rcontacts.size() + cloth.m_scontacts.size();

@@ -91,9 +91,13 @@ Settings hostSettings();
 
 std::vector<float> positionsOf(const btSoftBody& cloth);  // x y z per node
 TriangleMesh meshOf(const btSoftBody& cloth);
-btScalar lowestOf(const btSoftBody& cloth);  // m, least y of a node
-double rmsSpeed(const btSoftBody& cloth);    // m/s
-int contactsHeld(const btSoftBody& cloth);   // constraints that the body has for Bullet's solver
+btScalar lowestOf(const btSoftBody& cloth);           // m, least y of a node
+double rmsSpeed(const btSoftBody& cloth);             // m/s
+btVector3 linearMomentumOf(const btSoftBody& cloth);  // kg m/s, of nodes that are not pinned
+// Angular momentum about the origin, kg m²/s; no node is pinned.
+btVector3 angularMomentumOf(const btSoftBody& cloth);
+btVector3 angularMomentumOf(const btRigidBody& body);
+int contactsHeld(const btSoftBody& cloth);  // constraints that the body has for Bullet's solver
 // Compares every bit.
 bool sameContacts(const std::vector<ContactInfo>& a, const std::vector<ContactInfo>& b);
 

@@ -261,4 +261,51 @@ TEST(SelfCollision, SwitchedOffItCostsNothing)
     layers.m_world.step();
     EXPECT_EQ(layers.m_plugin.statistics().m_selfContacts, 0u);
 }
+// Bullet's flags ask for the same.
+TEST(SelfCollision, FlagsOfBulletKeepClothsApart)
+{
+    Layers layers(hostSettings(), 3, 0.05f, false);
+    for (btSoftBody* cloth : layers.m_cloths)
+        cloth->m_cfg.collisions |= btSoftBody::fCollision::VF_SS | btSoftBody::fCollision::CL_SELF;
+    MeshShape shape(makeSphere(0.4f, 3));
+    layers.m_world.addObstacle(shape.shape());
+    EXPECT_EQ(layers.run(90), 0u);
+    EXPECT_GT(layers.m_plugin.statistics().m_selfContacts, 0u);
+    for (const btSoftBody* cloth : layers.m_cloths)
+        EXPECT_EQ(cloth->m_scontacts.size(), 0);
+}
+
+TEST(SelfCollision, FlagsAreBulletsWithItsLinks)
+{
+    Settings settings = hostSettings();
+    settings.m_solver = Solver::Bullet;
+    Layers layers(settings, 2, 0.02f, false);
+    for (btSoftBody* cloth : layers.m_cloths)
+        cloth->m_cfg.collisions |= btSoftBody::fCollision::VF_SS;
+    layers.m_world.step();
+    EXPECT_EQ(layers.m_plugin.statistics().m_selfContacts, 0u);
+    EXPECT_GT(layers.m_cloths[0]->m_scontacts.size() + layers.m_cloths[1]->m_scontacts.size(), 0);
+}
+
+// A cloth that is folded onto itself, with and without a flag.
+TEST(SelfCollision, AFlagOfBulletKeepsAClothFromItself)
+{
+    for (const bool isSet : {false, true})
+    {
+        Plugin plugin(hostSettings());
+        DropWorld world(&plugin);
+        btSoftBody& cloth = world.addCloth(ClothSpec());
+        cloth.setSelfCollision(isSet);
+        world.step();  // remembers where the nodes are at rest
+        for (int i = 0; i < cloth.m_nodes.size(); ++i)
+        {
+            btSoftBody::Node& node = cloth.m_nodes[i];
+            node.m_x.setX(btFabs(node.m_x.x()));
+            if (node.m_x.x() > 0 && i % 17 > 8) node.m_x.setY(node.m_x.y() + btScalar(0.03));
+            node.m_q = node.m_x;
+        }
+        world.step(5);
+        EXPECT_EQ(plugin.statistics().m_selfContacts > 0, isSet);
+    }
+}
 }  // namespace drape::test

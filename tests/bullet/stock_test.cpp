@@ -75,10 +75,34 @@ TEST_F(Stock, DrapeTakesAKinematicMesh)
     EXPECT_EQ(m_plugin.whyStock(&addCloth(), &m_world.addKinematic(m_shape.shape())), "");
 }
 
-TEST_F(Stock, ADynamicMeshIsLeftToBullet)
+TEST_F(Stock, DrapeTakesTheShapesOfADynamicBody)
+{
+    btBoxShape box(btVector3(1, btScalar(0.2), 1));
+    for (btCollisionShape* shape :
+         {static_cast<btCollisionShape*>(&m_shape.shape()), static_cast<btCollisionShape*>(&box)})
+    {
+        btRigidBody body(btScalar(1), nullptr, shape, btVector3(1, 1, 1));
+        EXPECT_EQ(m_plugin.whyStock(&addCloth(), &body), "");
+    }
+}
+
+TEST_F(Stock, ADynamicBodyIsLeftToBulletBesideClothThatBulletSolves)
 {
     btRigidBody body(btScalar(1), nullptr, &m_shape.shape(), btVector3(1, 1, 1));
-    expectReason(addCloth(), body, "dynamic");
+    btSoftBody& cloth = addCloth();
+    cloth.m_cfg.viterations = 1;
+    expectReason(cloth, body, "Bullet solves the soft body's links");
+}
+
+TEST(DynamicConvexShapes, AreLeftToBulletOnRequest)
+{
+    Settings settings = hostSettings();
+    settings.m_dynamicConvex = DynamicConvex::Bullet;
+    Plugin plugin(settings);
+    DropWorld world(&plugin);
+    btBoxShape box(btVector3(1, btScalar(0.2), 1));
+    btRigidBody& body = world.addDynamic(box, 1, btTransform::getIdentity());
+    EXPECT_NE(plugin.whyStock(&world.addCloth(ClothSpec()), &body).find("m_dynamicConvex"), std::string::npos);
 }
 
 TEST_F(Stock, AMeshThatTurnsDynamicAndBackChangesItsOwnerBothTimes)
@@ -108,13 +132,22 @@ TEST_F(Stock, ClusterModeIsLeftToBullet)
     EXPECT_EQ(m_plugin.statistics().m_contacts, 0u);
 }
 
-TEST_F(Stock, AGimpactShapeIsLeftToBullet)
+TEST_F(Stock, DrapeTakesAGImpactMesh)
 {
     btTriangleMesh triangles;
     triangles.addTriangle(btVector3(-1, 0, -1), btVector3(0, 0, 1), btVector3(1, 0, -1));
     btGImpactMeshShape shape(&triangles);
     shape.updateBound();
-    expectReason(addCloth(), m_world.addObstacle(shape), "GImpact");
+    EXPECT_EQ(m_plugin.whyStock(&addCloth(), &m_world.addObstacle(shape)), "");
+}
+
+TEST_F(Stock, AGImpactCompoundIsLeftToBullet)
+{
+    btGImpactCompoundShape shape;
+    btBoxShape box(btVector3(1, 1, 1));
+    shape.addChildShape(btTransform::getIdentity(), &box);
+    shape.updateBound();
+    expectReason(addCloth(), m_world.addObstacle(shape), "not a triangle mesh");
 }
 
 TEST_F(Stock, TheReasonNamesTheChildOfACompound)

@@ -39,6 +39,7 @@ TEST(SettingsRanges, ValuesOutOfRangeAreRefused)
     EXPECT_NE(errorOfSettings([](Settings& s) { s.m_mode = ContactMode(3); }), "");
     EXPECT_NE(errorOfSettings([](Settings& s) { s.m_solver = Solver(3); }), "");
     EXPECT_NE(errorOfSettings([](Settings& s) { s.m_solverPlace = SolverPlace(3); }), "");
+    EXPECT_NE(errorOfSettings([](Settings& s) { s.m_dynamicConvex = DynamicConvex(2); }), "");
     EXPECT_NE(errorOfSettings([](Settings& s) { s.m_crossover = double(kNaN); }), "");
     EXPECT_EQ(errorOfSettings([](Settings& s) { s.m_crossover = double(kInfinity); }), "");
 }

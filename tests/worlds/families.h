@@ -43,6 +43,9 @@ void buildPressure(WorldBuilder& builder);    // a closed body under pressure
 void buildMovingPins(WorldBuilder& builder);  // corners that are dragged over hills
 void buildAnchors(WorldBuilder& builder);     // cloth anchored to a rigid body
 
+// Dynamic bodies that fall on cloth, which hangs or falls (load_worlds.cpp).
+void buildLoads(WorldBuilder& builder);
+
 // Ropes, and cloth with a fringe, over something round or sharp (rope_worlds.cpp).
 void buildRopes(WorldBuilder& builder);
 }  // namespace drape::test

@@ -45,10 +45,11 @@ constexpr RandomKind kRandomKinds[] = {{"terrain", buildTerrain},
                                        {"slats", buildSlats},
                                        {"drawer", buildDrawer},
                                        {"chimney", buildChimney},
-                                       {"ropes", buildRopes}};
+                                       {"ropes", buildRopes},
+                                       {"loads", buildLoads}};
 constexpr int kRandomKindCount = static_cast<int>(sizeof kRandomKinds / sizeof *kRandomKinds);
-// The kinds of the group "all". Ropes are a group of their own, so that a seed keeps its world.
-constexpr int kAllCount = kRandomKindCount - 1;
+// The kinds of the group "all". Ropes and loads are groups of their own, so that a seed keeps its world.
+constexpr int kAllCount = kRandomKindCount - 2;
 constexpr int kTinyStatic = kRandomKindCount;
 constexpr int kTinyKinematic = kTinyStatic + 1;
 constexpr int kSkirtTurn = kTinyStatic + 2;

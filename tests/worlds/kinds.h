@@ -30,8 +30,8 @@ struct ModifierChoice
 };
 
 // Returns `count` worlds: for one seed after the other, from `seed` on, a world of each kind in `group`. A group is a
-// kind's name, "all" for the random kinds but ropes, "tiny" or "skirts". A grid ends with its last setting. Returns
-// nothing for a group that is not known.
+// kind's name, "all" for the random kinds but ropes and loads, "tiny" or "skirts". A grid ends with its last setting.
+// Returns nothing for a group that is not known.
 std::vector<WorldSpec> worldsOf(const std::string& group, std::uint64_t seed, std::size_t count,
                                 const ModifierChoice& modifiers);
 

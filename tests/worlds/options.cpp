@@ -34,9 +34,10 @@ std::string kindProblem(const WorldsOptions& options)
 
 void addWorlds(CLI::App& app, WorldsOptions& options, std::string& modifiers)
 {
-    app.add_option("--kind", options.m_kind,
-                   "a kind of --list; all: the random ones without ropes; tiny: worlds of 4 to 9 nodes; skirts: two "
-                   "grids of settings");
+    app.add_option(
+        "--kind", options.m_kind,
+        "a kind of --list; all: the random ones without ropes and loads; tiny: worlds of 4 to 9 nodes; skirts: two "
+        "grids of settings");
     app.add_option("--seed", options.m_seed, "first seed, or first setting of a grid, 0 to 1000000000")
         ->check(CLI::Validator(wholeNumber(0, 1000000000), ""));
     app.add_option("--count", options.m_count, "number of worlds of every chosen kind, with consecutive seeds")

@@ -15,6 +15,8 @@ public:
 
     // Counts failed, crashed and timed-out worlds.
     std::size_t failing() const { return m_failing; }
+    // Steps whose status reported missing contacts.
+    std::size_t reportedSteps() const { return m_reportedSteps; }
     std::size_t startIntersecting() const { return m_startIntersecting; }
     std::size_t worlds() const { return m_worlds; }
     std::string text() const;

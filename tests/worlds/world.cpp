@@ -173,6 +173,32 @@ WorldObstacle& World::addObstacle(const TriangleMesh& mesh, const ObstacleSpec& 
     return *m_obstacles.back();
 }
 
+WorldObstacle& World::addLoad(const TriangleMesh& mesh, const LoadSpec& spec)
+{
+    auto obstacle = std::make_unique<WorldObstacle>();
+    obstacle->m_mesh = mesh;
+    makeShape(*obstacle, {});
+    btVector3 low, high, inertia;
+    obstacle->shape().getAabb(btTransform::getIdentity(), low, high);
+    const btScalar margin = btScalar(m_obstacleMargin);
+    const btVector3 half = (high - low) / 2 - btVector3(margin, margin, margin);
+    obstacle->m_box = std::make_unique<btBoxShape>(half);
+    obstacle->m_box->calculateLocalInertia(btScalar(spec.m_mass), inertia);
+    if (!spec.m_isBox) obstacle->m_box.reset();
+    btCollisionShape* const shape =
+        spec.m_isBox ? static_cast<btCollisionShape*>(obstacle->m_box.get()) : &obstacle->shape();
+    btRigidBody::btRigidBodyConstructionInfo info(btScalar(spec.m_mass), nullptr, shape, inertia);
+    info.m_startWorldTransform = spec.m_pose;
+    auto body = std::make_unique<btRigidBody>(info);
+    body->setLinearVelocity(spec.m_velocity);
+    body->setAngularVelocity(spec.m_spin);
+    body->setFriction(btScalar(spec.m_friction));
+    m_world->addRigidBody(body.get());
+    obstacle->m_object = std::move(body);
+    m_obstacles.push_back(std::move(obstacle));
+    return *m_obstacles.back();
+}
+
 WorldCloth& World::addGrid(const GridSpec& spec)
 {
     std::vector<btVector3> places;

@@ -1,4 +1,5 @@
-// One random world in Bullet: cloths, obstacles of triangle meshes that rest or move, and the time steps.
+// One random world in Bullet: cloths, obstacles of triangle meshes that rest or move, dynamic bodies, and the time
+// steps.
 //
 // Owns its objects. Nothing here is random except the time steps of two ways of stepping, which have a seed. SI units,
 // y up.
@@ -35,6 +36,7 @@ struct WorldObstacle
     std::unique_ptr<btBvhTriangleMeshShape> m_meshShape;
     std::unique_ptr<btScaledBvhTriangleMeshShape> m_scaledShape;  // null: the mesh shape itself is used
     std::vector<std::unique_ptr<btCompoundShape>> m_compounds;
+    std::unique_ptr<btBoxShape> m_box;                    // null: the mesh shape is used
     btTransform m_inObject = btTransform::getIdentity();  // pose of the mesh within its compounds
     std::unique_ptr<btCollisionObject> m_object;
     std::function<btTransform(double time)> m_motion;  // pose of the object over time; empty: the object rests
@@ -58,6 +60,16 @@ struct ObstacleSpec
     double m_friction = .5;
     int m_compoundDepth = 0;               // 0: no compound
     const btVector3* m_scaling = nullptr;  // null: no scaled shape
+};
+
+// A dynamic body. Its shape is a btBoxShape if it is a box, else a triangle mesh.
+struct LoadSpec
+{
+    bool m_isBox = false;
+    double m_mass = 1;  // kg
+    btTransform m_pose = btTransform::getIdentity();
+    btVector3 m_velocity = btVector3(0, 0, 0), m_spin = btVector3(0, 0, 0);  // m/s, rad/s
+    double m_friction = .5;
 };
 
 struct GridSpec
@@ -86,6 +98,8 @@ public:
     World& operator=(const World&) = delete;
 
     WorldObstacle& addObstacle(const TriangleMesh& mesh, const ObstacleSpec& spec);
+    // mesh: of the box, if it is one.
+    WorldObstacle& addLoad(const TriangleMesh& mesh, const LoadSpec& spec);
     WorldCloth& addGrid(const GridSpec& spec);
     WorldCloth& addCloth(std::unique_ptr<btSoftBody> body);  // the body has its margin
     void addBody(std::unique_ptr<btRigidBody> body, std::unique_ptr<btCollisionShape> shape);

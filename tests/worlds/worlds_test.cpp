@@ -83,6 +83,17 @@ TEST(Worlds, RopesStayOutside)
     expectFewFail(worldsOf("ropes", 0, 120, kPlain), kRopesFailing);
 }
 
+// Bullet's own collision would let the loads through.
+TEST(Worlds, LoadsStayOutside)
+{
+    WorkerOptions options;
+    options.m_backend = WorldBackend::Substeps;
+    std::string failing;
+    const Summary summary = runSample(worldsOf("loads", 0, 60, kPlain), failing, options);
+    EXPECT_EQ(summary.failing(), 0u) << failing;
+    EXPECT_EQ(summary.reportedSteps(), 0u);
+}
+
 TEST(Worlds, TinyOnesKeepClothOutside)
 {
     expectFewFail(worldsOf("tiny", 0, 2000, kPlain), kTinyFailing);

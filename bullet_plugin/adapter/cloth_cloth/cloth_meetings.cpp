@@ -44,6 +44,7 @@ std::uint64_t ClothMeetings::layoutHash() const
         const btSoftBody& body = *member.m_body;
         hash = mix(mix(hash, reinterpret_cast<std::uintptr_t>(&body)), std::uint64_t(member.m_thickness * 1e7));
         hash = mix(mix(hash, std::uint64_t(body.m_nodes.size())), std::uint64_t(body.m_links.size()));
+        hash = mix(hash, std::uint64_t(member.m_self->m_revision));
         for (int f = 0; f < body.m_faces.size(); ++f)
             for (int k = 0; k < 3; ++k)
                 hash = mix(hash, std::uint64_t(body.m_faces[f].m_n[k] - &body.m_nodes[0]));
@@ -61,8 +62,7 @@ void ClothMeetings::assignSet()
         const btSoftBody& body = *m_members[i].m_body;
         readFaces(body, triangles[i], edges[i]);
         members.push_back({triangles[i].data(), triangles[i].size() / 3, edges[i].data(), edges[i].size() / 2,
-                           m_state.m_selfCollision.find(body)->m_rest.data(),
-                           static_cast<std::size_t>(body.m_nodes.size())});
+                           m_members[i].m_self->m_rest.data(), static_cast<std::size_t>(body.m_nodes.size())});
         most = std::max(most, m_members[i].m_thickness);
     }
     m_set.assign(members, float(most));
@@ -73,14 +73,14 @@ void ClothMeetings::begin(const Bodies& bodies, const std::function<bool(const b
     m_members.clear();
     m_state.m_clothPairs.clear();
     bool anyStepped = false;
-    for (int i = 0; m_state.m_selfCollision.any() && i < bodies.size(); ++i)
+    for (int i = 0; i < bodies.size(); ++i)
     {
         const SelfColliding* const self = m_state.m_selfCollision.find(*bodies[i]);
         if (!self || bodies[i]->m_nodes.size() == 0) continue;
         const btScalar thickness = SelfCollision::thicknessOf(*bodies[i], *self);
         const bool moves = isStepped(*bodies[i]);
         anyStepped = anyStepped || moves;
-        if (thickness > 0) m_members.push_back({bodies[i], thickness, moves, nullptr, false});
+        if (thickness > 0) m_members.push_back({bodies[i], self, thickness, moves, nullptr, false});
     }
     if (!anyStepped) m_members.clear();
     m_wasPushed = false;
@@ -94,10 +94,11 @@ void ClothMeetings::begin(const Bodies& bodies, const std::function<bool(const b
     m_layout = layout;
 }
 
-// Returns whether Bullet's filters let two members collide.
+// Returns whether two members collide: as they ask for it, and as Bullet's filters let them.
 bool ClothMeetings::canMeet(std::size_t a, std::size_t b) const
 {
-    if (a == b) return true;
+    if (a == b) return m_members[a].m_self->m_meetsItself;
+    if (!m_members[a].m_self->m_meetsOthers || !m_members[b].m_self->m_meetsOthers) return false;
     const btSoftBody &first = *m_members[a].m_body, &second = *m_members[b].m_body;
     const btBroadphaseProxy *p = first.getBroadphaseHandle(), *q = second.getBroadphaseHandle();
     const bool pass = p && q && (p->m_collisionFilterGroup & q->m_collisionFilterMask) &&

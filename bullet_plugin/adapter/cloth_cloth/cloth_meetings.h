@@ -46,6 +46,7 @@ private:
     struct Member
     {
         btSoftBody* m_body;
+        const SelfColliding* m_self;
         btScalar m_thickness;  // m
         bool m_isStepped;
         SolverNodes* m_nodes;

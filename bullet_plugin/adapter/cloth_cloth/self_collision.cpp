@@ -1,5 +1,6 @@
 #include "bullet_plugin/adapter/cloth_cloth/self_collision.h"
 
+#include "BulletCollision/BroadphaseCollision/btBroadphaseProxy.h"
 #include "bullet_plugin/adapter/pairs/margins.h"
 #include "bullet_plugin/adapter/vectors.h"
 
@@ -18,18 +19,47 @@ void readRest(const btSoftBody& body, std::vector<float>& rest)
 
 void SelfCollision::set(const btSoftBody& body, btScalar thickness)
 {
-    SelfColliding self = {thickness, {}};
+    SelfColliding self;
+    self.m_thickness = thickness;
+    self.m_isAsked = true;
     readRest(body, self.m_rest);
     m_bodies[&body] = std::move(self);
 }
 
 const SelfColliding* SelfCollision::find(const btSoftBody& body)
 {
-    const auto found = m_bodies.find(&body);
-    if (found == m_bodies.end()) return nullptr;
+    auto found = m_bodies.find(&body);
+    if (found == m_bodies.end() || !found->second.m_isAsked)
+    {
+        const bool meetsOthers = m_heedsFlags && (body.m_cfg.collisions & btSoftBody::fCollision::VF_SS);
+        const bool meetsItself =
+            m_heedsFlags && (body.m_useSelfCollision || (body.m_cfg.collisions & btSoftBody::fCollision::CL_SELF));
+        if (!meetsOthers && !meetsItself)
+        {
+            if (found != m_bodies.end()) m_bodies.erase(found);
+            return nullptr;
+        }
+        if (found == m_bodies.end()) found = m_bodies.emplace(&body, SelfColliding()).first;
+        const int proxy = body.getBroadphaseHandle() ? body.getBroadphaseHandle()->m_uniqueId : 0;
+        if (found->second.m_proxy != proxy) ++found->second.m_revision;
+        if (found->second.m_proxy != proxy) found->second.m_rest.clear();
+        found->second.m_proxy = proxy;
+        found->second.m_meetsItself = meetsItself;
+        found->second.m_meetsOthers = meetsOthers;
+    }
     if (found->second.m_rest.size() != 3 * static_cast<std::size_t>(body.m_nodes.size()))
         readRest(body, found->second.m_rest);
     return &found->second;
+}
+
+bool SelfCollision::takes(const btSoftBody& body, const btSoftBody& other)
+{
+    if (!m_heedsFlags) return false;
+    const SelfColliding *const first = find(body), *const second = find(other);
+    const int both = body.m_cfg.collisions & other.m_cfg.collisions & btSoftBody::fCollision::SVSmask;
+    if (both & (btSoftBody::fCollision::CL_SS | btSoftBody::fCollision::VF_DD)) return false;
+    if (!first || !second || !first->m_meetsOthers || !second->m_meetsOthers) return false;
+    return thicknessOf(body, *first) > 0 && thicknessOf(other, *second) > 0;
 }
 
 btScalar SelfCollision::thicknessOf(const btSoftBody& body, const SelfColliding& self)

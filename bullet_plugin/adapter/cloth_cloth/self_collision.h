@@ -1,6 +1,7 @@
-// The soft bodies that collide with themselves and with each other (Plugin::setSelfCollision()).
+// The soft bodies that collide with themselves and with each other: those of Plugin::setSelfCollision(), and those
+// whose flags of Bullet's ask for it.
 //
-// Bodies are compared by address and followed only while a step has them.
+// Bodies are compared by address and followed only while a step has them. With Solver::Bullet the flags are Bullet's.
 #pragma once
 
 #include <unordered_map>
@@ -12,22 +13,33 @@ namespace drape
 {
 struct SelfColliding
 {
-    btScalar m_thickness;       // m; 0: twice the body's margin
+    btScalar m_thickness = 0;   // m; 0: twice the body's margin
+    bool m_isAsked = false;     // by the app's call
+    bool m_meetsItself = true;  // it collides with itself
+    bool m_meetsOthers = true;  // it collides with other bodies for which this is true
+    int m_proxy = 0;            // identifies the body in its world; another one may get its address
+    int m_revision = 0;         // counts up when m_rest becomes another body's
     std::vector<float> m_rest;  // x y z per node, m, where the nodes were when it was switched on
 };
 
 class SelfCollision
 {
 public:
+    // heedsFlags: of Bullet's.
+    explicit SelfCollision(bool heedsFlags) : m_heedsFlags(heedsFlags) {}
+
     void set(const btSoftBody& body, btScalar thickness);
     void clear(const btSoftBody& body) { m_bodies.erase(&body); }
-    bool any() const { return !m_bodies.empty(); }
-    // Returns null if the body does not collide with itself. Takes new positions at rest if it got other nodes.
+    // Returns null if the body collides neither with itself nor with others. Takes new positions at rest if it got
+    // other nodes.
     const SelfColliding* find(const btSoftBody& body);
+    // Returns whether Drape takes the place of Bullet's own algorithm between two bodies that a solver steps.
+    bool takes(const btSoftBody& body, const btSoftBody& other);
     // Returns the thickness at which the body collides with itself, m.
     static btScalar thicknessOf(const btSoftBody& body, const SelfColliding& self);
 
 private:
+    bool m_heedsFlags;
     std::unordered_map<const btSoftBody*, SelfColliding> m_bodies;
 };
 }  // namespace drape

@@ -2,6 +2,7 @@
 // frame.
 #pragma once
 
+#include <unordered_map>
 #include <vector>
 
 #include "BulletSoftBody/btSoftBody.h"
@@ -43,6 +44,27 @@ struct NodePush
     btScalar m_speedLimit;  // m/s along the normal after the push
 };
 
+// A dynamic body of an obstacle, which may yield.
+struct DynamicBody
+{
+    btRigidBody* m_object;
+    btVector3 m_velocity;  // m/s, before Bullet's step
+    btVector3 m_place;     // m, its origin then
+};
+
+// A contact with the mesh of one.
+struct DynamicContact
+{
+    const Contact* m_contact;  // the pipeline's, until its next submit
+    DynamicBody m_body;
+};
+
+// The end of a node's path, and its velocity there.
+struct PathEnd
+{
+    btVector3 m_position, m_velocity;  // m, m/s
+};
+
 struct BodyContacts
 {
     MeshId m_cloth = kNoMesh;
@@ -52,13 +74,16 @@ struct BodyContacts
     bool m_heldTogether = false;         // since the last detection, see stretch.h
     bool m_obstacleJumps = false;        // an obstacle moves farther in the step than its size, or turns far
     bool m_hasDeformedPair = false;      // an obstacle's vertices move in the step
+    bool m_hasDynamicPair = false;       // an obstacle is a dynamic body, which the cloth pushes
     bool m_isOnDevice = false;           // see kept_bodies.h
     bool m_meetsSurface = false;         // the host must solve it: a path meets a surface, or the like
     bool m_isOffPath = false;            // the solver left its path so far that it may have passed a surface
     std::vector<TangledPair> m_tangled;  // the body's pairs that are pushed apart
     bool m_wasTangled = false;           // in this step or one shortly before
     std::vector<NodePush> m_pushes;
-    std::vector<Contact> m_pushContacts;  // one per push
+    std::vector<Contact> m_pushContacts;            // one per push
+    std::vector<DynamicContact> m_dynamicContacts;  // not among m_contacts
+    std::unordered_map<int, PathEnd> m_wholePaths;  // by node: ends of paths that dynamic obstacles alone cut
 
     SolverNodes& nodes() { return m_contacts.m_nodes; }
     const SolverNodes& nodes() const { return m_contacts.m_nodes; }
@@ -75,12 +100,14 @@ struct BodyContacts
         m_contacts.m_hardness = float(body->m_cfg.kKHR);
         m_contacts.m_perSecond = float(body->m_sst.isdt);
         m_contacts.m_undamped = float(1 - body->m_cfg.kDP);
-        m_leftOut = m_heldTogether = m_obstacleJumps = m_hasDeformedPair = false;
+        m_leftOut = m_heldTogether = m_obstacleJumps = m_hasDeformedPair = m_hasDynamicPair = false;
         m_isOnDevice = m_meetsSurface = m_isOffPath = false;
         m_tangled.clear();
         m_wasTangled = false;
         m_pushes.clear();
         m_pushContacts.clear();
+        m_dynamicContacts.clear();
+        m_wholePaths.clear();
     }
 };
 }  // namespace drape

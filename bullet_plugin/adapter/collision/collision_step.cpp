@@ -81,6 +81,7 @@ void CollisionStep::clear()
     m_byCloth.clear();
     m_byBody.clear();
     m_pairs.clear();
+    m_dynamic.clear();
     m_paired.clear();
     m_pinned.clear();
     m_mirrors.clear();
@@ -102,11 +103,12 @@ void CollisionStep::giveBackRoom()
 CollisionStep::Pair CollisionStep::makePair(const PairNote& note, const ClothMirror& cloth, MeshId obstacle)
 {
     const ObstacleMirror& mirror = m_state.obstacleMirror(note);
-    Pair pair = {cloth.id(), obstacle, note.m_thickness, nullptr, {&cloth, &mirror, note.m_motion, note.m_kinematic}};
+    Pair pair = {cloth.id(), obstacle, note.m_thickness, nullptr, {&cloth, &mirror, note.m_motion, note.m_isMovable},
+                 note};
     if (!mirror.before()) return pair;
     bringToHost(*bodyOf(cloth.id()));
     const btScalar reach = note.m_thickness * (1 + btScalar(m_state.settings().m_activation));
-    const DeformedPair& deformed = m_deformed.update(cloth, mirror, note.m_motion, note.m_kinematic, reach);
+    const DeformedPair& deformed = m_deformed.update(cloth, mirror, note.m_motion, note.m_isMovable, reach);
     const std::size_t body = m_byCloth.at(cloth.id());
     m_bodies[body].m_hasDeformedPair = true;
     m_byCloth[deformed.m_mesh] = body;
@@ -126,7 +128,7 @@ void CollisionStep::addPair(const PairNote& note)
         if (m_state.m_kept.stepOf(*note.m_cloth)) m_bringToHost(*note.m_cloth);
     };
     const MeshId clothId = bodyOf(cloth.id()) ? cloth.id() : cloth.refresh(m_state.pipeline(), bringToHost);
-    const MeshId obstacleId = m_state.obstacleMirror(note).refresh(m_state.pipeline(), note.m_kinematic, note.m_motion);
+    const MeshId obstacleId = m_state.obstacleMirror(note).refresh(m_state.pipeline(), note.m_isMovable, note.m_motion);
     if (clothId == kNoMesh || obstacleId == kNoMesh) return;
     if (!bodyOf(clothId))
     {
@@ -148,11 +150,25 @@ void CollisionStep::addPair(const PairNote& note)
     body.m_obstacleJumps = body.m_obstacleJumps || jumps(note.m_motion, (high - low).length());
     ClothContacts& contacts = body.m_contacts;
     const float thickness = float(note.m_thickness);
-    contacts.m_limit.addObstacle(vec3Of(low), vec3Of(high), thickness, m_state.settings().m_activation,
-                                 {m_state.m_found.source().mapOf(obstacleId), m_pairs.back().m_carriedStarts});
-    contacts.m_obstacles.push_back({obstacleId, thickness});
+    if (note.m_dynamic && note.m_yields)
+        addDynamic(body, obstacleId, note);
+    else
+    {
+        contacts.m_limit.addObstacle(vec3Of(low), vec3Of(high), thickness, m_state.settings().m_activation,
+                                     {m_state.m_found.source().mapOf(obstacleId), m_pairs.back().m_carriedStarts});
+        contacts.m_obstacles.push_back({obstacleId, thickness});
+    }
     contacts.m_leastThickness = std::min(contacts.m_leastThickness, thickness);
     contacts.m_mostThickness = std::max(contacts.m_mostThickness, thickness);
+}
+
+// A dynamic obstacle may yield, so that it has no motion yet that could limit the cloth's: the real paths are checked
+// instead (followDynamic()).
+void CollisionStep::addDynamic(BodyContacts& body, MeshId obstacle, const PairNote& note)
+{
+    m_dynamic[obstacle] = {note.m_dynamic, note.m_velocity, note.m_noted.getOrigin()};
+    body.m_hasDynamicPair = body.m_contacts.m_isFiltered = true;
+    bringToHost(body);
 }
 
 // Records the paths of the nodes and writes them for the device, so that a large cloth's nodes are read once. Later
@@ -228,7 +244,7 @@ void CollisionStep::begin(const std::vector<PairNote>& notes, BringToHost bringT
     m_deformed.beginStep();
     for (const PairNote& note : notes)
     {
-        if (anyMoves(*note.m_cloth))
+        if (anyMoves(*note.m_cloth) || (note.m_dynamic && note.m_yields))
             addPair(note);
         else if (std::find(m_pinned.begin(), m_pinned.end(), note.m_cloth) == m_pinned.end())
             m_pinned.push_back(note.m_cloth);

@@ -41,6 +41,9 @@ public:
     // the detection have solved (ClothContacts::m_isSolved). Their contacts are not sorted. Null if there are none.
     using TakeSolved = std::function<void()>;
     void finish(const TakeSolved& takeSolved = nullptr);
+    // Takes over, once the bodies are solved, how far dynamic obstacles have come, and has checkOffPath() check the
+    // bodies beside them.
+    void followDynamic();
     // Detects again, once the bodies are solved, along the real paths of bodies whose links pulled nodes far off
     // their predicted paths. Ends those paths before anything that they would have passed. Returns these bodies, with
     // their contacts along the paths.
@@ -78,6 +81,7 @@ private:
         btScalar m_thickness;
         const Vec3* m_carriedStarts;  // carried starts in that case, see Carry; else null
         StartingPair m_start;
+        PairNote m_note;
     };
 
     // Nodes of a pipeline mesh that must be written.
@@ -90,10 +94,13 @@ private:
 
     void addPair(const PairNote& note);
     Pair makePair(const PairNote& note, const ClothMirror& cloth, MeshId obstacle);
+    void addDynamic(BodyContacts& body, MeshId obstacle, const PairNote& note);
     void checkStarts();
     void preparePushes(BodyContacts& body);
     void addContacts(BodyContacts& body, const Contact* first, std::uint32_t count, const OrderedFeature& ordered);
-    void addHeldContacts(BodyContacts& body, const Contact* first, std::uint32_t count, const OrderedFeature& ordered);
+    void addChosen(BodyContacts& body, const Contact* first, std::uint32_t count, const OrderedFeature& ordered,
+                   Detection detection);
+    const DynamicBody* dynamicOf(MeshId obstacle) const;
     void addPushes(BodyContacts& body);
     void markUnguarded();
     void leaveOut(std::size_t index);
@@ -109,8 +116,13 @@ private:
     float allowanceOf(MeshId cloth);
     void receive(const ContactList& contacts, Detection detection);
     std::vector<SolverContact> impactsOf(const BodyContacts& body) const;
+    std::vector<const Pair*> findJammed(std::vector<bool>& isJammed) const;
+    bool holdStill();
     void reportPassed();
+    std::vector<SolverContact> dynamicImpactsOf(const BodyContacts& body) const;
     bool cutAtImpactsOf(BodyContacts& body, Cut cut, std::vector<Vec3>* slides);
+    bool cutBeforeDynamic(BodyContacts& body);
+    void restorePaths();
     bool cutPaths();
     bool cutOffPath(Cut cut);
     BodyContacts* bodyOf(MeshId cloth);
@@ -121,7 +133,8 @@ private:
     std::unordered_map<MeshId, std::size_t> m_byCloth;  // indices in m_bodies
     std::unordered_map<const btSoftBody*, std::size_t> m_byBody;
     std::vector<Pair> m_pairs;
-    std::unordered_set<std::uint64_t> m_paired;  // a pair's cloth above its obstacle
+    std::unordered_map<MeshId, DynamicBody> m_dynamic;  // by mesh of an obstacle
+    std::unordered_set<std::uint64_t> m_paired;         // a pair's cloth above its obstacle
     std::vector<const btSoftBody*> m_pinned;
     std::vector<ClothMirror*> m_mirrors;  // one for each of m_bodies
     std::vector<Upload> m_uploads;

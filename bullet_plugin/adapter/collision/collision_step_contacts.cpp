@@ -53,10 +53,10 @@ void CollisionStep::receive(const ContactList& contacts, Detection detection)
         if (!body || !isDetected(*body, detection) || isDone(*body)) continue;
         const std::uint32_t count = static_cast<std::uint32_t>(i - begin);
         const OrderedFeature& ordered = body->m_contacts.m_order->features()[cloth.m_index];
-        if (body->m_tangled.empty())
+        if (body->m_tangled.empty() && !body->m_hasDynamicPair)
             addContacts(*body, &first, count, ordered);
         else
-            addHeldContacts(*body, &first, count, ordered);
+            addChosen(*body, &first, count, ordered, detection);
     }
     for (BodyContacts& pushed : m_bodies)
         if (!isDone(pushed)) addPushes(pushed);
@@ -110,7 +110,10 @@ ContactList CollisionStep::waitForContacts(const TakeSolved& takeSolved)
 void CollisionStep::receiveAll(Detection detection, const TakeSolved& takeSolved)
 {
     for (BodyContacts& body : m_bodies)
+    {
         body.m_contacts.m_features.clear();
+        body.m_dynamicContacts.clear();
+    }
     const ContactList contacts = waitForContacts(takeSolved);
     addDetection(m_state.m_statistics, m_state.pipeline().statistics(), detection);
     markUnguarded();
@@ -130,11 +133,54 @@ std::vector<SolverContact> CollisionStep::impactsOf(const BodyContacts& body) co
     return impacts;
 }
 
+// Lists the body's contacts with dynamic obstacles that its nodes' paths meet, until the bodies are solved.
+std::vector<SolverContact> CollisionStep::dynamicImpactsOf(const BodyContacts& body) const
+{
+    std::vector<SolverContact> impacts;
+    for (const DynamicContact& dynamic : body.m_dynamicContacts)
+        if (dynamic.m_contact->m_time < 1)
+            impacts.push_back(body.m_contacts.resolve(m_state.m_found.source(), *dynamic.m_contact));
+    return impacts;
+}
+
 bool CollisionStep::cutAtImpactsOf(BodyContacts& body, Cut cut, std::vector<Vec3>* slides)
 {
-    if (!cutAtImpacts(body.nodes(), impactsOf(body), cut, body.perSecond(), slides)) return false;
+    const float perSecond = body.m_contacts.m_movesOnly ? 0 : body.perSecond();
+    if (!cutAtImpacts(body.nodes(), impactsOf(body), cut, perSecond, slides)) return false;
     writeShifted(body.nodes(), *body.m_body);
     return true;
+}
+
+// Cuts paths where they meet dynamic obstacles, for the detection alone: what cloth and obstacle give each other there
+// is for the solver to find out.
+bool CollisionStep::cutBeforeDynamic(BodyContacts& body)
+{
+    const std::vector<SolverContact> impacts = dynamicImpactsOf(body);
+    for (const SolverContact& impact : impacts)
+        for (int k = 0; k < 3 && impact.m_nodes[k] >= 0; ++k)
+        {
+            const btSoftBody::Node& node = body.m_body->m_nodes[impact.m_nodes[k]];
+            body.m_wholePaths.emplace(impact.m_nodes[k], PathEnd{node.m_x, node.m_v});
+        }
+    for (const SolverContact& impact : impactsOf(body))
+        for (int k = 0; k < 3 && impact.m_nodes[k] >= 0; ++k)
+            body.m_wholePaths.erase(impact.m_nodes[k]);
+    if (!cutAtImpacts(body.nodes(), impacts, Cut::EachNode, 0)) return false;
+    writeShifted(body.nodes(), *body.m_body);
+    return true;
+}
+
+// Gives nodes back the paths that dynamic obstacles cut.
+void CollisionStep::restorePaths()
+{
+    for (BodyContacts& body : m_bodies)
+        for (const auto& whole : body.m_wholePaths)
+        {
+            btSoftBody::Node& node = body.m_body->m_nodes[whole.first];
+            node.m_x = whole.second.m_position;
+            node.m_v = whole.second.m_velocity;
+            recordEnd(node, std::size_t(whole.first), body.nodes());
+        }
 }
 
 // Thin cloth meets surfaces in most steps and slides on; thicker cloth stops where it meets one.
@@ -146,6 +192,7 @@ bool CollisionStep::cutPaths()
         const btSoftBody& cloth = *body.m_body;
         const float way = float(cloth.m_worldInfo->m_gravity.length() * cloth.m_sst.sdt * cloth.m_sst.sdt);
         const bool isThin = way > DRAPE_THIN_SHARE * body.m_contacts.m_leastThickness;
+        any = cutBeforeDynamic(body) || any;
         any = cutAtImpactsOf(body, Cut::EachNode, isThin ? &body.m_contacts.m_slides : nullptr) || any;
     }
     return any;
@@ -169,6 +216,7 @@ void CollisionStep::finish(const TakeSolved& takeSolved)
         submit(Detection::Again);
         receiveHeld(Detection::Again);
     }
+    restorePaths();
 }
 
 bool CollisionStep::cutOffPath(Cut cut)
@@ -181,6 +229,65 @@ bool CollisionStep::cutOffPath(Cut cut)
         any = true;
     }
     return any;
+}
+
+// Marks the bodies beside dynamic obstacles that leave cloth no room, and all bodies that share these obstacles with
+// them. Lists the obstacles.
+std::vector<const CollisionStep::Pair*> CollisionStep::findJammed(std::vector<bool>& isJammed) const
+{
+    std::vector<const Pair*> pairs;
+    std::unordered_set<const btRigidBody*> objects;
+    for (std::size_t i = 0; i < m_bodies.size(); ++i)
+        isJammed.push_back(m_bodies[i].m_isOffPath && m_bodies[i].m_hasDynamicPair && anyCuts(impactsOf(m_bodies[i])));
+    for (bool grows = true; grows;)
+    {
+        grows = false;
+        for (const Pair& pair : m_pairs)
+        {
+            const btRigidBody* const object = pair.m_note.m_dynamic;
+            const std::size_t body = m_byCloth.at(pair.m_cloth);
+            if (!object || !pair.m_note.m_yields || object->isStaticOrKinematicObject()) continue;
+            if (isJammed[body] == (objects.count(object) > 0)) continue;
+            isJammed[body] = grows = true;
+            objects.insert(object);
+        }
+    }
+    for (const Pair& pair : m_pairs)
+        if (objects.count(pair.m_note.m_dynamic) > 0) pairs.push_back(&pair);
+    return pairs;
+}
+
+// Puts dynamic obstacles that leave cloth no room back to where they started the step, at rest, and with them the cloth
+// beside them. Returns whether there were any.
+bool CollisionStep::holdStill()
+{
+    std::vector<bool> isJammed;
+    const std::vector<const Pair*> pairs = findJammed(isJammed);
+    for (std::size_t k = 0; k < m_bodies.size() && !pairs.empty(); ++k)
+    {
+        BodyContacts& body = m_bodies[k];
+        if (!isJammed[k]) continue;
+        body.m_isOffPath = true;
+        for (int i = 0; i < body.m_body->m_nodes.size(); ++i)
+        {
+            btSoftBody::Node& node = body.m_body->m_nodes[i];
+            if (!(node.m_im > 0)) continue;
+            node.m_x = node.m_q;
+            node.m_v.setZero();
+            recordEnd(node, std::size_t(i), body.nodes());
+        }
+    }
+    for (const Pair* pair : pairs)
+    {
+        btRigidBody& object = *pair->m_note.m_dynamic;
+        object.setLinearVelocity(btVector3(0, 0, 0));
+        object.setAngularVelocity(btVector3(0, 0, 0));
+        object.setCenterOfMassTransform(pair->m_note.m_noted);
+    }
+    if (pairs.empty()) return false;
+    followDynamic();
+    m_state.m_statistics.m_status |= kStepMotionHeldBack;
+    return true;
 }
 
 // Reports bodies whose paths still pass a surface after the last cut. The next step checks them where they are,
@@ -215,6 +322,30 @@ void CollisionStep::reportMeetingDeformed()
     }
 }
 
+// Returns null for an obstacle that does not yield.
+const DynamicBody* CollisionStep::dynamicOf(MeshId obstacle) const
+{
+    const auto found = m_dynamic.find(obstacle);
+    return found == m_dynamic.end() ? nullptr : &found->second;
+}
+
+void CollisionStep::followDynamic()
+{
+    for (Pair& pair : m_pairs)
+    {
+        if (!pair.m_note.m_dynamic) continue;
+        ObstacleMirror& mirror = m_state.obstacleMirror(pair.m_note);
+        pair.m_note.endMotion();
+        pair.m_start.m_motion = pair.m_note.m_motion;
+        mirror.follow(m_state.pipeline(), pair.m_note.m_motion);
+        mirror.setBodyEnd(pair.m_note.m_dynamic->getWorldTransform(), pair.m_note.m_place);
+        m_state.m_found.nameObstacle(pair.m_obstacle, pair.m_note.m_dynamic, pair.m_note.m_motion);
+        BodyContacts& body = *bodyOf(pair.m_cloth);
+        body.m_contacts.m_movesOnly = body.m_hasDynamicPair;
+        watch(*body.m_body);
+    }
+}
+
 void CollisionStep::detectRealPaths()
 {
     namePairs(Detection::Check);
@@ -243,6 +374,7 @@ std::vector<BodyContacts*> CollisionStep::checkOffPath()
         detectRealPaths();
         if (detections > kMostDetections)
         {
+            if (holdStill()) detectRealPaths();
             reportPassed();
             return {};
         }

@@ -84,7 +84,7 @@ void CollisionStep::checkStarts()
     for (BodyContacts& body : m_bodies)
     {
         preparePushes(body);
-        body.m_contacts.m_isFiltered = !body.m_tangled.empty() || !body.m_pushes.empty();
+        body.m_contacts.m_isFiltered = !body.m_tangled.empty() || !body.m_pushes.empty() || body.m_hasDynamicPair;
     }
 }
 
@@ -115,23 +115,33 @@ void CollisionStep::preparePushes(BodyContacts& body)
     }
 }
 
-// Adds contacts of one feature, without those that would keep it on the wrong side of their obstacle.
-void CollisionStep::addHeldContacts(BodyContacts& body, const Contact* first, std::uint32_t count,
-                                    const OrderedFeature& ordered)
+// Adds contacts of one feature, without those that would keep it on the wrong side of their obstacle. Those with
+// dynamic obstacles are listed apart until the bodies are solved.
+void CollisionStep::addChosen(BodyContacts& body, const Contact* first, std::uint32_t count,
+                              const OrderedFeature& ordered, Detection detection)
 {
-    const auto isHeld = [&](const Contact& contact)
+    const auto isHeld = [&](MeshId obstacle)
     {
-        const MeshId obstacle = m_state.pipeline().view(contact).m_obstacle;
         return std::all_of(body.m_tangled.begin(), body.m_tangled.end(),
                            [&](const TangledPair& tangled)
                            { return tangled.m_obstacle != obstacle || tangled.contains(ordered.m_nodes); });
     };
-    for (const Contact *contact = first, *end = first + count; contact != end;)
+    const Contact* begin = first;  // first contact that is chosen and not added yet
+    const Contact* const end = first + count;
+    const auto add = [&](const Contact* last)
     {
-        const Contact* const next = std::find_if_not(contact, end, isHeld);
-        if (next != contact) addContacts(body, contact, static_cast<std::uint32_t>(next - contact), ordered);
-        contact = std::find_if(next, end, isHeld);
+        if (begin != last) addContacts(body, begin, static_cast<std::uint32_t>(last - begin), ordered);
+        begin = last + 1;
+    };
+    for (const Contact* contact = first; contact != end; ++contact)
+    {
+        const MeshId obstacle = m_state.pipeline().view(*contact).m_obstacle;
+        const DynamicBody* const dynamic = detection == Detection::Check ? nullptr : dynamicOf(obstacle);
+        const bool held = isHeld(obstacle);
+        if (held && dynamic) body.m_dynamicContacts.push_back({contact, *dynamic});
+        if (!held || dynamic) add(contact);
     }
+    add(end);
 }
 
 void CollisionStep::addPushes(BodyContacts& body)

@@ -75,7 +75,7 @@ void PairStarts::findPlaces(const StartingPair& pair, bool all, PathEnd end)
     {
         const btSoftBody::Node& at = body.m_nodes[static_cast<int>(node)];
         const btVector3& place = atStart ? at.m_q : at.m_x;
-        m_places[node] = vec3Of(pair.m_kinematic ? toObstacle * place : place);
+        m_places[node] = vec3Of(pair.m_isMovable ? toObstacle * place : place);
     };
     for (std::size_t node = 0; all && node < m_places.size(); ++node)
         find(node);

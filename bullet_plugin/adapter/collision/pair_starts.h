@@ -33,7 +33,7 @@ struct StartingPair
     const ClothMirror* m_cloth;
     const ObstacleMirror* m_obstacle;
     BodyMotion m_motion;
-    bool m_kinematic;  // else the obstacle's positions are the world's
+    bool m_isMovable;  // else the obstacle's positions are the world's
 };
 
 class PairStarts

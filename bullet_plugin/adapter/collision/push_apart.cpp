@@ -105,7 +105,7 @@ void PairStarts::pushNode(const StartingPair& pair, int node, Vec3 displacement,
     if (!(depth > 0) || !(movableInverseMass(body.m_body->m_nodes[node]) > 0)) return;
     NodePush push;
     push.m_node = node;
-    push.m_normal = (pair.m_kinematic ? pair.m_motion.m_end.getBasis() * there : there).normalized();
+    push.m_normal = (pair.m_isMovable ? pair.m_motion.m_end.getBasis() * there : there).normalized();
     push.m_distance = std::min(depth + DRAPE_RECOVERED_SHARE * body.m_contacts.m_leastThickness,
                                (kLeastSpeed + kSpeedPerMetre * depth) * body.m_body->m_sst.sdt);
     push.m_speedLimit = SIMD_INFINITY;

@@ -9,6 +9,8 @@
 #include "BulletCollision/CollisionShapes/btBvhTriangleMeshShape.h"
 #include "BulletCollision/CollisionShapes/btScaledBvhTriangleMeshShape.h"
 #include "BulletCollision/CollisionShapes/btStridingMeshInterface.h"
+#include "BulletCollision/Gimpact/btGImpactShape.h"
+#include "bullet_plugin/adapter/mirrors/convex_reader.h"
 #include "bullet_plugin/adapter/pairs/margins.h"
 
 namespace drape
@@ -102,22 +104,34 @@ private:
 // The mesh behind a shape and the scaling that the shape and the mesh apply together.
 struct ScaledMesh
 {
-    const btBvhTriangleMeshShape* m_shape;
+    const btConcaveShape* m_shape;  // the owner of the triangles
+    const btStridingMeshInterface* m_mesh;
     btVector3 m_scaling;
 
-    const btStridingMeshInterface& mesh() const { return *m_shape->getMeshInterface(); }
+    const btStridingMeshInterface& mesh() const { return *m_mesh; }
 };
+
+ScaledMesh resolveGImpact(const btGImpactMeshShape& shape)
+{
+    // The parts have replaced the mesh's scaling by the shape's if that was set.
+    const btVector3 scaling =
+        shape.getMeshPartCount() > 0 ? shape.getMeshPart(0)->getLocalScaling() : btVector3(1, 1, 1);
+    return ScaledMesh{&shape, shape.getMeshInterface(), scaling};
+}
 
 ScaledMesh resolve(const btCollisionShape& shape)
 {
+    if (shape.getShapeType() == GIMPACT_SHAPE_PROXYTYPE)
+        return resolveGImpact(static_cast<const btGImpactMeshShape&>(shape));
     if (shape.getShapeType() == SCALED_TRIANGLE_MESH_SHAPE_PROXYTYPE)
     {
         const btScaledBvhTriangleMeshShape& scaled = static_cast<const btScaledBvhTriangleMeshShape&>(shape);
         const btBvhTriangleMeshShape* child = scaled.getChildShape();
-        return ScaledMesh{child, child->getMeshInterface()->getScaling() * scaled.getLocalScaling()};
+        return ScaledMesh{child, child->getMeshInterface(),
+                          child->getMeshInterface()->getScaling() * scaled.getLocalScaling()};
     }
     const btBvhTriangleMeshShape& bvh = static_cast<const btBvhTriangleMeshShape&>(shape);
-    return ScaledMesh{&bvh, bvh.getMeshInterface()->getScaling()};
+    return ScaledMesh{&bvh, bvh.getMeshInterface(), bvh.getMeshInterface()->getScaling()};
 }
 
 // The vertices of a part that its triangles use, in their order. Parts may share one array of vertices, and Bullet
@@ -184,15 +198,17 @@ private:
     std::vector<std::int64_t> m_indices;
 };
 
+void appendPosition(const btVector3& world, WorldMesh& mesh)
+{
+    for (int axis = 0; axis < 3; ++axis)
+        mesh.m_positions.push_back(static_cast<float>(world[axis]));
+}
+
 void appendVertices(const LockedPart& part, const UsedVertices& used, const btVector3& scaling, const btTransform& pose,
                     WorldMesh& mesh)
 {
     for (std::int64_t i : used.indices())
-    {
-        const btVector3 world = pose * (part.vertex(i) * scaling);
-        for (int axis = 0; axis < 3; ++axis)
-            mesh.m_positions.push_back(static_cast<float>(world[axis]));
-    }
+        appendPosition(pose * (part.vertex(i) * scaling), mesh);
 }
 
 bool isFinite(const WorldMesh& mesh, std::size_t vertex)
@@ -220,36 +236,11 @@ void appendTriangles(const LockedPart& part, const UsedVertices& used, std::size
     }
 }
 
-// A vertex that is not finite belongs to no triangle any more; zero keeps it out of every minimum and maximum.
-void clearInvalid(std::vector<float>& positions)
-{
-    for (float& value : positions)
-        if (!std::isfinite(value)) value = 0;
-}
-}  // namespace
-
-bool isMeshShape(int shapeType)
-{
-    return shapeType == TRIANGLE_MESH_SHAPE_PROXYTYPE || shapeType == SCALED_TRIANGLE_MESH_SHAPE_PROXYTYPE ||
-           shapeType == MULTIMATERIAL_TRIANGLE_MESH_PROXYTYPE;
-}
-
-const btCollisionShape* meshShapeOf(const btCollisionShape& shape)
-{
-    return resolve(shape).m_shape;
-}
-
-btScalar marginBeyondBounds(const btCollisionShape& shape)
-{
-    return std::max(btScalar(0), marginOf(shape) - resolve(shape).m_shape->getMargin());
-}
-
-void readMesh(const btCollisionShape& shape, const btTransform& pose, WorldMesh& mesh)
+// Appends all parts of a mesh shape.
+void appendParts(const btCollisionShape& shape, const btTransform& pose, WorldMesh& mesh)
 {
     const ScaledMesh source = resolve(shape);
     const bool mirrored = source.m_scaling.x() * source.m_scaling.y() * source.m_scaling.z() < 0;
-    mesh.m_triangles.clear();
-    mesh.m_positions.clear();
     for (int p = 0; p < source.mesh().getNumSubParts(); ++p)
     {
         const LockedPart part(source.mesh(), p);
@@ -258,6 +249,81 @@ void readMesh(const btCollisionShape& shape, const btTransform& pose, WorldMesh&
         appendVertices(part, used, source.m_scaling, pose, mesh);
         appendTriangles(part, used, first, mirrored, mesh);
     }
+}
+
+void appendConvex(const btConvexShape& shape, const btTransform& pose, WorldMesh& mesh)
+{
+    std::vector<btVector3> vertices;
+    readConvex(shape, vertices, mesh.m_triangles);
+    for (const btVector3& vertex : vertices)
+        appendPosition(pose * vertex, mesh);
+}
+
+// Returns a number that changes with a convex shape's surface.
+std::uint64_t convexSignature(const btConvexShape& shape)
+{
+    std::vector<btVector3> points;
+    listSurface(shape, points);
+    Hash hash;
+    hash.add(std::uint64_t(shape.getShapeType()));
+    for (const btVector3& point : points)
+        hash.add(point);
+    return hash.value();
+}
+
+// A vertex that is not finite belongs to no triangle any more; zero keeps it out of every minimum and maximum.
+void clearInvalid(std::vector<float>& positions)
+{
+    for (float& value : positions)
+        if (!std::isfinite(value)) value = 0;
+}
+}  // namespace
+
+bool isReadableType(int shapeType)
+{
+    return shapeType == TRIANGLE_MESH_SHAPE_PROXYTYPE || shapeType == SCALED_TRIANGLE_MESH_SHAPE_PROXYTYPE ||
+           shapeType == MULTIMATERIAL_TRIANGLE_MESH_PROXYTYPE || shapeType == GIMPACT_SHAPE_PROXYTYPE ||
+           isConvexType(shapeType);
+}
+
+bool isMeshShape(const btCollisionShape& shape)
+{
+    if (isConvexShape(shape)) return false;
+    if (shape.getShapeType() != GIMPACT_SHAPE_PROXYTYPE) return isReadableType(shape.getShapeType());
+    const auto kind = static_cast<const btGImpactShapeInterface&>(shape).getGImpactShapeType();
+    return kind == CONST_GIMPACT_TRIMESH_SHAPE;
+}
+
+bool isReadable(const btCollisionShape& shape)
+{
+    return isMeshShape(shape) || isConvexShape(shape);
+}
+
+btScalar meshMargin(const btCollisionShape& shape)
+{
+    return isConvexShape(shape) ? convexMargin(shape) : marginOf(shape);
+}
+
+const btCollisionShape* meshShapeOf(const btCollisionShape& shape)
+{
+    if (isConvexShape(shape)) return &shape;
+    return resolve(shape).m_shape;
+}
+
+btScalar marginBeyondBounds(const btCollisionShape& shape)
+{
+    if (shape.getShapeType() == GIMPACT_SHAPE_PROXYTYPE || isConvexShape(shape)) return 0;
+    return std::max(btScalar(0), marginOf(shape) - resolve(shape).m_shape->getMargin());
+}
+
+void readMesh(const btCollisionShape& shape, const btTransform& pose, WorldMesh& mesh)
+{
+    mesh.m_triangles.clear();
+    mesh.m_positions.clear();
+    if (isConvexShape(shape))
+        appendConvex(static_cast<const btConvexShape&>(shape), pose, mesh);
+    else
+        appendParts(shape, pose, mesh);
     clearInvalid(mesh.m_positions);
 
     Hash topology, positions;
@@ -272,12 +338,15 @@ void readMesh(const btCollisionShape& shape, const btTransform& pose, WorldMesh&
 
 std::uint64_t meshSignature(const btCollisionShape& shape)
 {
+    if (isConvexShape(shape)) return convexSignature(static_cast<const btConvexShape&>(shape));
     const ScaledMesh source = resolve(shape);
     Hash hash;
     hash.add(std::uint64_t(reinterpret_cast<std::uintptr_t>(&source.mesh())));
     hash.add(source.m_scaling);
-    hash.add(source.m_shape->getLocalAabbMin());
-    hash.add(source.m_shape->getLocalAabbMax());
+    btVector3 low, high;
+    source.m_shape->getAabb(btTransform::getIdentity(), low, high);
+    hash.add(low);
+    hash.add(high);
     for (int p = 0; p < source.mesh().getNumSubParts(); ++p)
     {
         const LockedPart part(source.mesh(), p);

@@ -1,6 +1,6 @@
 // Reads a Bullet triangle mesh shape: all parts, strides, float or double vertices, 8, 16 or 32 bit indices, scaling.
 //
-// Input: a shape that isMeshShape() accepts and a pose. Output: triangles and world positions (m) for the core,
+// Input: a mesh or a convex shape (convex_reader.h) and a pose. Output: triangles and world positions (m) for the core,
 // transformed in btScalar before they are rounded to float. Unused vertices are left out, and so are triangles with a
 // negative index or a vertex that is not finite. Like Bullet, this trusts indices and not the number of vertices that
 // a part states. Cost: a few passes over the mesh; meshSignature() reads a bounded number of vertices only.
@@ -23,8 +23,15 @@ struct WorldMesh
     std::uint64_t m_positionHash = 0;
 };
 
-// btBvhTriangleMeshShape, btScaledBvhTriangleMeshShape, btMultimaterialTriangleMeshShape.
-bool isMeshShape(int shapeType);
+// Returns whether readMesh() may accept shapes of that type.
+bool isReadableType(int shapeType);
+// btBvhTriangleMeshShape, btScaledBvhTriangleMeshShape, btMultimaterialTriangleMeshShape, btGImpactMeshShape.
+bool isMeshShape(const btCollisionShape& shape);
+// Returns whether readMesh() accepts the shape.
+bool isReadable(const btCollisionShape& shape);
+
+// Returns how far the surface with which cloth collides lies outside of the mesh, m, at least 0.
+btScalar meshMargin(const btCollisionShape& shape);
 
 // The shape that owns the triangles: the child of a scaled shape, else the shape itself.
 const btCollisionShape* meshShapeOf(const btCollisionShape& shape);

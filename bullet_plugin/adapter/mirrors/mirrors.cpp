@@ -223,7 +223,7 @@ void ObstacleMirror::deform(Pipeline& pipeline, std::vector<float>& positions, b
     ++m_positionRevision;
     m_positions.swap(positions);
     // A change by a margin at most counts as motion even if the mesh was not checked in the step before.
-    const bool isMotion = m_continued || m_mostMotion <= static_cast<float>(marginOf(*m_key.m_shape));
+    const bool isMotion = m_continued || m_mostMotion <= static_cast<float>(meshMargin(*m_key.m_shape));
     if (m_before && isMotion && m_mostMotion <= kMostMotion * m_before->size())
         m_deformedStep = m_lastSeen;
     else
@@ -243,27 +243,34 @@ void ObstacleMirror::drop(Pipeline& pipeline)
     m_read = false;
 }
 
-MeshId ObstacleMirror::refresh(Pipeline& pipeline, bool kinematic, const BodyMotion& motion)
+MeshId ObstacleMirror::refresh(Pipeline& pipeline, bool movable, const BodyMotion& motion)
 {
-    if (kinematic != m_kinematic || m_oneSided != m_heldOneSided) drop(pipeline);
-    m_kinematic = kinematic;
+    if (movable != m_isMovable || m_oneSided != m_heldOneSided) drop(pipeline);
+    m_isMovable = movable;
     m_heldOneSided = m_oneSided;
-    const btTransform pose = kinematic ? btTransform::getIdentity() : motion.m_end;
+    const btTransform pose = movable ? btTransform::getIdentity() : motion.m_end;
     const std::uint64_t signature = meshSignature(*m_key.m_shape);
     if (!m_read || signature != m_signature || !(pose == m_pose)) reload(pipeline, pose);
     m_meshShape = meshShapeOf(*m_key.m_shape);
     m_signature = signature;
     m_pose = pose;
     m_read = true;
-    if (kinematic && !(motion.m_start == m_end)) startAnew();
+    // Each cloth beside the obstacle refreshes it.
+    const bool isKnown = motion.m_start == m_end || (motion.m_start == m_start && motion.m_end == m_end);
+    if (movable && !isKnown) startAnew();
+    m_start = motion.m_start;
     m_end = motion.m_end;
-    if (kinematic && m_id != kNoMesh)
-    {
-        float start[12], end[12];
-        writePose(motion.m_start, start);
-        writePose(motion.m_end, end);
-        pipeline.placeObstacle(m_id, start, end);
-    }
+    if (movable) follow(pipeline, motion);
     return m_id;
+}
+
+void ObstacleMirror::follow(Pipeline& pipeline, const BodyMotion& motion)
+{
+    m_end = motion.m_end;
+    if (m_id == kNoMesh) return;
+    float start[12], end[12];
+    writePose(motion.m_start, start);
+    writePose(motion.m_end, end);
+    pipeline.placeObstacle(m_id, start, end);
 }
 }  // namespace drape

@@ -9,7 +9,7 @@
 // changed.
 //
 // Cost: meshSignature() for an unchanged obstacle or a kinematic one that only moved; a comparison of some indices
-// for an unchanged cloth. Metres; positions are in a kinematic obstacle's own frame, else in the world's.
+// for an unchanged cloth. Metres; positions are in a movable obstacle's own frame, else in the world's.
 #pragma once
 
 #include <cstdint>
@@ -128,11 +128,25 @@ public:
     const ObstacleKey& key() const { return m_key; }
     MeshId id() const { return m_id; }
 
-    // The obstacle rests at the motion's end unless it is kinematic.
-    MeshId refresh(Pipeline& pipeline, bool kinematic, const BodyMotion& motion);
+    // movable: of a kinematic or dynamic object. Other obstacles rest at the motion's end.
+    MeshId refresh(Pipeline& pipeline, bool movable, const BodyMotion& motion);
+    // Gives a movable obstacle's motion in this step another end. Call after refresh().
+    void follow(Pipeline& pipeline, const BodyMotion& motion);
     // True for the shape itself and for the mesh shape that a scaled shape shows, as they were last refreshed.
     bool uses(const btCollisionShape* shape) const { return shape == m_key.m_shape || shape == m_meshShape; }
     void requireReading() { m_read = false; }
+    // Returns where a dynamic obstacle starts a step with its body at `body` and its shape at `place` in it: where it
+    // ended the last one, if both are what they were. Else `pose`, which differs from that by rounding in a compound.
+    const btTransform& startOf(const btTransform& body, const btTransform& place, const btTransform& pose) const
+    {
+        return body == m_bodyEnd && place == m_place ? m_end : pose;
+    }
+    // Records where the body of a dynamic obstacle ends the step.
+    void setBodyEnd(const btTransform& body, const btTransform& place)
+    {
+        m_bodyEnd = body;
+        m_place = place;
+    }
     // Declares that the obstacle is no longer where the last step left it, see ClothMirror. refresh() does so itself if
     // the pose or the mesh changed by anything except the motion over a step.
     void startAnew() { ++m_startRevision; }
@@ -162,15 +176,18 @@ private:
     ObstacleKey m_key;
     const btCollisionShape* m_meshShape = nullptr;  // compared, never followed
     MeshId m_id = kNoMesh;
-    btTransform m_pose = btTransform::getIdentity();  // pose of the positions in the pipeline
-    btTransform m_end = btTransform::getIdentity();   // pose of the obstacle at the last step's end
+    btTransform m_pose = btTransform::getIdentity();   // pose of the positions in the pipeline
+    btTransform m_start = btTransform::getIdentity();  // poses of the obstacle at the last step's start and end
+    btTransform m_end = btTransform::getIdentity();
+    btTransform m_bodyEnd = btTransform(btMatrix3x3(0, 0, 0, 0, 0, 0, 0, 0, 0));  // see setBodyEnd(); no pose before
+    btTransform m_place = btTransform::getIdentity();
     std::uint64_t m_startRevision = 0, m_positionRevision = 0;
     std::unique_ptr<MeshProbe> m_before;  // probe of a mesh whose vertices moved
     std::vector<float> m_positions;       // its positions in the pipeline
     float m_mostMotion = 0;               // m
     std::uint64_t m_deformedStep = 0;
     std::uint64_t m_signature = 0, m_topologyHash = 0, m_positionHash = 0;
-    bool m_kinematic = false;
+    bool m_isMovable = false;
     bool m_heldOneSided = false;  // by the pipeline
     bool m_read = false;          // the pipeline has what the shape had when it was last read
 };

@@ -8,6 +8,7 @@
 #include "BulletCollision/BroadphaseCollision/btOverlappingPairCache.h"
 #include "BulletCollision/CollisionShapes/btCompoundShape.h"
 #include "BulletCollision/NarrowPhaseCollision/btPersistentManifold.h"
+#include "BulletDynamics/Dynamics/btRigidBody.h"
 #include "LinearMath/btAabbUtil2.h"
 #include "bullet_plugin/adapter/mirrors/mesh_reader.h"
 #include "bullet_plugin/adapter/pairs/eligibility.h"
@@ -147,7 +148,7 @@ btScalar reachOf(const PluginState& state, const btSoftBody& body)
 // Returns how far the shape's bounds fall short of its part of that reach, m: for a compound the most of any child.
 btScalar reachBeyondBounds(const btCollisionShape& shape, btScalar activation)
 {
-    if (isMeshShape(shape.getShapeType())) return activation * marginOf(shape) + marginBeyondBounds(shape);
+    if (isReadable(shape)) return activation * meshMargin(shape) + marginBeyondBounds(shape);
     btScalar most = 0;
     if (!shape.isCompound()) return most;
     const btCompoundShape& compound = static_cast<const btCompoundShape&>(shape);
@@ -167,15 +168,19 @@ public:
     bool process(const btBroadphaseProxy* proxy) override
     {
         const btCollisionObject* object = static_cast<const btCollisionObject*>(proxy->m_clientObject);
-        if (!object || !object->getCollisionShape() || !object->isStaticOrKinematicObject()) return true;
+        if (!object || !object->getCollisionShape()) return true;
+        if (!object->isStaticOrKinematicObject() && !btRigidBody::upcast(object)) return true;
         const btCollisionShape& shape = *object->getCollisionShape();
-        if (!isMeshShape(shape.getShapeType()) && shape.getShapeType() != COMPOUND_SHAPE_PROXYTYPE) return true;
+        const bool mayBeHandled =
+            isMeshShape(shape) || shape.isCompound() || (!object->isStaticOrKinematicObject() && isReadable(shape));
+        if (!mayBeHandled) return true;
         const btTransform& pose = object->getWorldTransform();
         StepObstacle obstacle;
         obstacle.m_object = object;
-        obstacle.m_motion = object->isKinematicObject() ? m_motions.observe(*object) : BodyMotion{pose, pose};
+        obstacle.m_motion = motionOf(*object);
         shape.getAabb(pose, obstacle.m_low, obstacle.m_high);
-        const bool mayChange = isMeshShape(shape.getShapeType()) && !obstacle.m_motion.moves();
+        // Bullet's box of a dynamic body changes with its velocity.
+        const bool mayChange = isMeshShape(shape) && object->isStaticOrKinematicObject() && !obstacle.m_motion.moves();
         obstacle.m_change = mayChange ? changeOf(obstacle, *proxy) : btScalar(0);
         if (!obstacle.isActive() && !m_resting) return true;
         obstacle.m_reach = reachBeyondBounds(shape, m_activation);
@@ -186,6 +191,14 @@ public:
     std::vector<StepObstacle> m_found;
 
 private:
+    // Bullet has predicted a dynamic body's pose at the step's end.
+    BodyMotion motionOf(const btCollisionObject& object) const
+    {
+        const btTransform& pose = object.getWorldTransform();
+        if (object.isKinematicObject()) return m_motions.observe(object);
+        const bool moves = !object.isStaticObject() && object.isActive();
+        return BodyMotion{pose, moves ? object.getInterpolationWorldTransform() : pose};
+    }
     // The broad phase still has the box of the step before, grown by the breaking threshold but for an object that was
     // just added. A box that changes by more than its size is another pose.
     static btScalar changeOf(const StepObstacle& mesh, const btBroadphaseProxy& proxy)

@@ -20,7 +20,7 @@ namespace drape
 {
 class PluginState;
 
-// A static or kinematic object with a mesh or a compound, as it stands in a step.
+// An object with a mesh or a compound, or a dynamic one with any shape of Drape's, as it stands in a step.
 struct StepObstacle
 {
     const btCollisionObject* m_object;

@@ -2,6 +2,8 @@
 
 #include "BulletCollision/BroadphaseCollision/btBroadphaseProxy.h"
 #include "BulletCollision/CollisionShapes/btCompoundShape.h"
+#include "BulletDynamics/Dynamics/btRigidBody.h"
+#include "bullet_plugin/adapter/mirrors/convex_reader.h"
 #include "bullet_plugin/adapter/mirrors/mesh_reader.h"
 #include "bullet_plugin/adapter/mirrors/solid_links.h"
 #include "bullet_plugin/adapter/solver/substep_body.h"
@@ -39,10 +41,21 @@ const char* reasonFromCloth(const PluginState& state, const btSoftBody& cloth)
 
 const char* reasonFromObstacle(const btCollisionObject& obstacle, const btCollisionShape& shape)
 {
-    if (shape.getShapeType() == GIMPACT_SHAPE_PROXYTYPE) return "the obstacle is a GImpact shape";
-    if (!isMeshShape(shape.getShapeType())) return "the obstacle is not a triangle mesh shape";
-    if (!obstacle.isStaticOrKinematicObject())
-        return "the obstacle is dynamic; only static and kinematic obstacles are handled";
+    const bool isDynamic = !obstacle.isStaticOrKinematicObject();
+    if (!isMeshShape(shape) && !(isDynamic && isConvexShape(shape))) return "the obstacle is not a triangle mesh shape";
+    if (isDynamic && !btRigidBody::upcast(&obstacle))
+        return "the obstacle is dynamic and no rigid body, such as a link of a multibody";
+    return nullptr;
+}
+
+// Pushes between cloth and a dynamic obstacle go through the core's substeps.
+const char* reasonFromDynamic(const PluginState& state, const btSoftBody& cloth, const btCollisionObject& obstacle,
+                              const btCollisionShape& shape)
+{
+    if (obstacle.isStaticOrKinematicObject()) return nullptr;
+    if (state.settings().m_dynamicConvex == DynamicConvex::Bullet && isConvexShape(shape))
+        return "Settings::m_dynamicConvex leaves convex shapes of dynamic bodies to Bullet";
+    if (reasonFromSettings(state, cloth)) return "the obstacle is dynamic, and Bullet solves the soft body's links";
     return nullptr;
 }
 
@@ -56,7 +69,8 @@ const char* reasonForStock(const PluginState& state, const btSoftBody& cloth, co
                            const btCollisionShape& shape)
 {
     if (const char* reason = reasonFromCloth(state, cloth)) return reason;
-    return reasonFromObstacle(obstacle, shape);
+    if (const char* reason = reasonFromObstacle(obstacle, shape)) return reason;
+    return reasonFromDynamic(state, cloth, obstacle, shape);
 }
 
 const char* reasonFromSettings(const PluginState& state, const btSoftBody& body)

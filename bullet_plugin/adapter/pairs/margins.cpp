@@ -2,6 +2,8 @@
 
 #include <cstdio>
 
+#include "bullet_plugin/adapter/mirrors/mesh_reader.h"
+
 namespace drape
 {
 namespace
@@ -30,13 +32,13 @@ btScalar sizeOf(const btCollisionShape& shape)
 {
     btVector3 low, high;
     shape.getAabb(btTransform::getIdentity(), low, high);
-    return largestOf(high - low) - 2 * shape.getMargin();
+    return largestOf(high - low) - 2 * (shape.isConvex() ? meshMargin(shape) : shape.getMargin());
 }
 }  // namespace
 
 btScalar thicknessOf(const btSoftBody& cloth, const btCollisionShape& obstacle)
 {
-    return std::max(kMinThickness, marginOf(*cloth.getCollisionShape()) + marginOf(obstacle));
+    return std::max(kMinThickness, marginOf(*cloth.getCollisionShape()) + meshMargin(obstacle));
 }
 
 std::string marginRemark(const btSoftBody& cloth, const btCollisionShape& obstacle)

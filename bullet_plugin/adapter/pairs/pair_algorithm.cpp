@@ -57,10 +57,14 @@ bool PairAlgorithm::take(btSoftBody& cloth, const btCollisionObjectWrapper& obst
 void PairAlgorithm::processStock(const btCollisionObjectWrapper* wrapA, const btCollisionObjectWrapper* wrapB,
                                  const btDispatcherInfo& info, btManifoldResult* result)
 {
+    const int type = (m_swapped ? wrapA : wrapB)->getCollisionShape()->getShapeType();
+    btCollisionAlgorithmCreateFunc& create = m_state.stockCreateFunction(type, m_swapped);
+    if (m_stockCreate != &create) dropStock();
     if (!m_stock)
     {
         btCollisionAlgorithmConstructionInfo construction(m_dispatcher, 0);
-        m_stock = m_state.stockCreateFunction(m_swapped).CreateCollisionAlgorithm(construction, wrapA, wrapB);
+        m_stock = create.CreateCollisionAlgorithm(construction, wrapA, wrapB);
+        m_stockCreate = &create;
     }
     if (m_stock) m_stock->processCollision(wrapA, wrapB, info, result);
 }

@@ -1,5 +1,5 @@
-// Bullet's collision algorithm for one (soft body, triangle mesh) pair. Notes the pair for the coming solve, or passes
-// it to Bullet's own algorithm, which is created only when needed.
+// Bullet's collision algorithm for one pair of a soft body and a shape that Drape may take. Notes the pair for the
+// coming solve, or passes it to Bullet's own algorithm, which is created only when needed.
 //
 // Guarantee: Drape's collision work does not happen here. The object fits the dispatcher's pool, whose elements have
 // the size of Bullet's own concave algorithm and which only asserts.
@@ -35,8 +35,9 @@ private:
     void dropStock();
 
     PluginState& m_state;
-    btCollisionAlgorithm* m_stock = nullptr;  // from the dispatcher's pool
-    const bool m_swapped;                     // the mesh is the first of the pair
+    btCollisionAlgorithm* m_stock = nullptr;                        // from the dispatcher's pool
+    const btCollisionAlgorithmCreateFunc* m_stockCreate = nullptr;  // made it
+    const bool m_swapped;                                           // the mesh is the first of the pair
 };
 
 // The function that the dispatcher calls for a new pair. `swapped`: the mesh comes first.

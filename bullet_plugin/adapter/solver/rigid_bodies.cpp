@@ -16,10 +16,12 @@ RigidBody rigidBodyOf(const btRigidBody* rigid)
 {
     RigidBody body = {};
     if (!rigid) return body;
+    const bool isDynamic = !rigid->isStaticOrKinematicObject();
     body.m_centre = vec3Of(rigid->getWorldTransform().getOrigin());
+    if (isDynamic && !rigid->isActive()) return body;  // Bullet leaves it where it is
     body.m_velocity = vec3Of(rigid->getLinearVelocity());
     body.m_spin = vec3Of(rigid->getAngularVelocity());
-    if (rigid->isStaticOrKinematicObject()) return body;
+    if (!isDynamic) return body;
     body.m_moves = 1;
     body.m_inverseMass = vec3Of(rigid->getLinearFactor() * rigid->getInvMass());
     for (int row = 0; row < 3; ++row)
@@ -31,6 +33,16 @@ RigidBody rigidBodyOf(const btRigidBody* rigid)
 std::uint32_t nodeIndex(const btSoftBody& body, const btSoftBody::Node* node)
 {
     return static_cast<std::uint32_t>(node - &body.m_nodes[0]);
+}
+
+// Moves the body on from where Bullet's step took it. shift: m. turn: rad.
+void displace(btRigidBody& rigid, const btVector3& shift, const btVector3& turn)
+{
+    btTransform pose = rigid.getWorldTransform();
+    pose.setOrigin(pose.getOrigin() + shift);
+    const btScalar angle = turn.length();
+    if (angle > 0) pose.setRotation((btQuaternion(turn / angle, angle) * pose.getRotation()).normalized());
+    rigid.setCenterOfMassTransform(pose);
 }
 }  // namespace
 
@@ -102,14 +114,55 @@ void RigidBodies::addRows(const btSoftBody& body, const SolverNodes& nodes, Rigi
     }
 }
 
+// Lets the body end the step where it yields to.
+RigidBody& RigidBodies::follow(std::uint32_t index, const DynamicBody& dynamic, btScalar dt)
+{
+    RigidBody& body = m_bodies[index];
+    if (body.m_follows || !body.m_moves) return body;
+    body.m_follows = 1;
+    const btRigidBody& rigid = *dynamic.m_object;
+    const btVector3 force = rigid.getTotalForce() * rigid.getInvMass() * rigid.getLinearFactor();
+    const btVector3 gained = (rigid.getLinearVelocity() - dynamic.m_velocity) / dt;
+    // Contacts and joints may have taken some or all of it.
+    const btScalar share = force.length2() > 0 ? gained.dot(force) / force.length2() : btScalar(0);
+    body.m_acceleration = vec3Of(force * std::min(btScalar(1), std::max(btScalar(0), share)));
+    const btVector3 moved = rigid.getWorldTransform().getOrigin() - dynamic.m_place;
+    body.m_displaced = vec3Of(moved / dt - rigid.getLinearVelocity());
+    return body;
+}
+
+void RigidBodies::addRow(const DynamicBody& dynamic, btScalar dt, const SolverContact& contact,
+                         const BlockedNodes& blocked, RigidRows& rows)
+{
+    RigidFeature row = {};
+    rows.setBodies(m_bodies);
+    row.m_body = indexOf(*dynamic.m_object);
+    for (int k = 0; k < 3 && contact.m_nodes[k] >= 0; ++k)
+    {
+        row.m_nodes[row.m_count] = std::uint32_t(contact.m_nodes[k]);
+        row.m_isBlocked[row.m_count] = blocked.isBlocked(contact.m_nodes[k], contact.m_plane.m_normal);
+        row.m_weights[row.m_count++] = contact.m_plane.m_weights[k];
+    }
+    // The contact is where the cloth is, so that friction acts on both sides at one point.
+    const Vec3 at = vec3AddScaled(contact.m_plane.m_point, contact.m_plane.m_normal, contact.m_thickness);
+    row.m_arm = vec3Sub(at, follow(row.m_body, dynamic, dt).m_centre);
+    row.m_plane.m_normal = contact.m_plane.m_normal;
+    row.m_plane.m_gap = contact.m_gaps.m_start;
+    row.m_plane.m_recover = contact.m_gaps.m_start < 0 ? contact.m_gaps.m_target - contact.m_gaps.m_start : 0.0f;
+    row.m_plane.m_friction = contact.m_friction;
+    row.m_reach = BlockedNodes::kNearBy * contact.m_thickness;
+    rows.add(row, float(dt));
+}
+
 void RigidBodies::applyImpulses() const
 {
     for (std::size_t i = 0; i < m_bodies.size(); ++i)
     {
-        btRigidBody* const rigid = m_rigid[i];
-        if (!rigid || rigid->isStaticOrKinematicObject()) continue;
-        rigid->applyCentralImpulse(vectorOf(m_bodies[i].m_impulse));
-        rigid->applyTorqueImpulse(vectorOf(m_bodies[i].m_turning));
+        if (!m_bodies[i].m_moves) continue;
+        btRigidBody& rigid = *m_rigid[i];
+        rigid.applyCentralImpulse(vectorOf(m_bodies[i].m_impulse));
+        rigid.applyTorqueImpulse(vectorOf(m_bodies[i].m_turning));
+        if (m_bodies[i].m_follows) displace(rigid, vectorOf(m_bodies[i].m_shift), vectorOf(m_bodies[i].m_turn));
     }
 }
 }  // namespace drape

@@ -1,5 +1,5 @@
 // The rigid bodies that cloth touches or hangs on in a step: contacts that Bullet's own algorithms found
-// (btSoftBody::m_rcontacts) and anchors, as rows of the core's solver.
+// (btSoftBody::m_rcontacts), contacts with the meshes of dynamic bodies, and anchors, as rows of the core's solver.
 //
 // Contacts and anchors act as those of btSoftBody::solveConstraints() do: friction is the product of both coefficients,
 // what a depth recovers follows kKHR or kCHR, and anchors follow kAHR and their influence. Cost: linear in both.
@@ -9,7 +9,10 @@
 #include <vector>
 
 #include "BulletSoftBody/btSoftBody.h"
+#include "bullet_plugin/adapter/collision/body_contacts.h"
+#include "bullet_plugin/core/solver/blocked_nodes.h"
 #include "bullet_plugin/core/solver/rigid_rows.h"
+#include "bullet_plugin/core/solver/solver_contact.h"
 
 namespace drape
 {
@@ -22,11 +25,15 @@ public:
     void clear();
     // Adds the body's contacts and anchors. nodes: with recorded paths.
     void addRows(const btSoftBody& body, const SolverNodes& nodes, RigidRows& rows);
-    // Gives the rigid bodies what the cloth pushed.
+    // Adds a contact with the mesh of a dynamic body. dt: s, of Bullet's step. blocked: the cloth's.
+    void addRow(const DynamicBody& dynamic, btScalar dt, const SolverContact& contact, const BlockedNodes& blocked,
+                RigidRows& rows);
+    // Gives the rigid bodies what the cloth pushed. Those with contacts of addRow() go where they yielded to.
     void applyImpulses() const;
 
 private:
     std::uint32_t indexOf(const btCollisionObject& object);
+    RigidBody& follow(std::uint32_t index, const DynamicBody& dynamic, btScalar dt);
 
     std::unordered_map<const btCollisionObject*, std::uint32_t> m_indices;
     std::vector<btRigidBody*> m_rigid;  // by index; null for an object that is none

@@ -61,6 +61,7 @@ void SoftBodySolver::processCollision(btSoftBody* body, const btCollisionObjectW
 
 void SoftBodySolver::processCollision(btSoftBody* body, btSoftBody* other)
 {
+    if (m_work && m_work->takesPair(*body, *other)) return;
     if (m_work) m_work->readByBullet(*body, *other);
     if (m_work) m_work->readByBullet(*other, *body);
     btDefaultSoftBodySolver::processCollision(body, other);

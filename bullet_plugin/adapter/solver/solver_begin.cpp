@@ -8,6 +8,7 @@
 #include "bullet_plugin/adapter/pairs/eligibility.h"
 #include "bullet_plugin/adapter/solver/body_jobs.h"
 #include "bullet_plugin/adapter/solver/solver_work.h"
+#include "bullet_plugin/adapter/wiring/wiring.h"
 #include "bullet_plugin/core/stopwatch.h"
 
 namespace drape
@@ -205,6 +206,8 @@ std::vector<StepObstacle> SoftBodySolver::Work::wakeReached(KinematicMotions& mo
     const bool anyAwake =
         std::any_of(taken.begin(), taken.end(), [](const btSoftBody* body) { return body->isActive(); });
     std::vector<StepObstacle> obstacles = stepObstacles(m_state, *taken[0], motions, anyAwake);
+    for (const StepObstacle& obstacle : obstacles)
+        if (takeGImpactBack(m_state, *taken[0], *obstacle.m_object, *obstacle.m_object->getCollisionShape())) break;
     bool anyWoken = false;
     for (btSoftBody* body : taken)
     {

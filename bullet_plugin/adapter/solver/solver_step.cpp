@@ -47,6 +47,15 @@ void holdStill(btSoftBody& body, const BodyContacts* contacts, const SubstepBody
         node.m_x = node.m_q;
     }
 }
+
+// Returns the largest speed of a node, m/s.
+btScalar fastestOf(const btSoftBody& body)
+{
+    btScalar most2 = 0;
+    for (int i = 0; i < body.m_nodes.size(); ++i)
+        most2 = std::max(most2, body.m_nodes[i].m_v.length2());
+    return btSqrt(most2);
+}
 }  // namespace
 
 // Leaves bodies to Bullet for this step that changed since the prediction, or that touch what Bullet's own algorithms
@@ -85,6 +94,15 @@ void SoftBodySolver::Work::chooseStage()
     if (nodes > 0 && !m_meetings.any()) m_stage = m_state.pipeline().solveStage(nodes);
 }
 
+// Returns the pairs of the step. A dynamic body beside cloth that Bullet solves is not pushed by it.
+std::vector<PairNote> SoftBodySolver::Work::takeNotes()
+{
+    std::vector<PairNote> notes = m_state.takeNotes(&m_owner, m_predicted);
+    for (PairNote& note : notes)
+        if (substepNodes(*note.m_cloth) == 0) note.m_yields = false;
+    return notes;
+}
+
 // Finds the contacts of the step.
 void SoftBodySolver::Work::detect()
 {
@@ -96,7 +114,7 @@ void SoftBodySolver::Work::detect()
     StepStatistics& statistics = m_state.m_statistics;
     if (m_usage.hasFallen(elementsOf(statistics))) giveBackRoom(m_state);
     Stopwatch watch;
-    step.begin(m_state.takeNotes(&m_owner, m_predicted), [this](btSoftBody& body) { bringToHost(body); });
+    step.begin(takeNotes(), [this](btSoftBody& body) { bringToHost(body); });
     bringFreeToHost(m_bodies);
     m_parts.m_mirrorMs += watch.lapMs();
     const bool follows = m_stage && mayFollow();
@@ -207,6 +225,7 @@ void SoftBodySolver::Work::solveBodies()
         if (holdInBounds(m_state, body, contactsOf(body))) m_state.m_statistics.m_status |= kStepMotionHeldBack;
     }
     m_rigidBodies.applyImpulses();
+    if (m_step) m_step->followDynamic();
     parts.m_writeBackMs = watch.lapMs();
 }
 
@@ -256,6 +275,7 @@ void SoftBodySolver::Work::solveStep()
     guardMeetings();
     step->reportMeetingDeformed();
     step->end();
+    if (m_state.settings().m_clothSleeps) letSleep();
     statistics.m_clothsKept = endKept(m_bodies);
     parts.m_uploadMs = step->uploadMs();
     parts.m_checkMs = watch.lapMs() - (statistics.m_waitMs - waitMs) - (parts.m_uploadMs - uploadMs);
@@ -266,6 +286,24 @@ void SoftBodySolver::Work::solveStep()
     static_cast<StepParts&>(statistics) = parts;
     const std::size_t all = m_state.pipeline().deviceWaits();
     statistics.m_deviceWaits = all > waits ? all - waits : 0;  // a device may have been opened anew
+}
+
+// Lets bodies fall asleep that have been slow for as long as Bullet waits with rigid bodies. Bullet puts them to sleep
+// together with the rigid bodies that they touch.
+void SoftBodySolver::Work::letSleep()
+{
+    for (int i = 0; i < m_bodies.size(); ++i)
+    {
+        btSoftBody& body = *m_bodies[i];
+        if (!isSteppedBody(body) || m_state.m_kept.isOnDevice(body) || gDisableDeactivation) continue;
+        // Bullet has put it to sleep in this step.
+        for (int k = 0; !body.isActive() && k < body.m_nodes.size(); ++k)
+            body.m_nodes[k].m_v.setZero();
+        if (!body.isActive()) continue;
+        const bool isSlow = fastestOf(body) < body.m_sleepingThreshold;
+        body.setDeactivationTime(isSlow ? body.getDeactivationTime() + m_dt : btScalar(0));
+        body.setActivationState(body.getDeactivationTime() > gDeactivationTime ? WANTS_DEACTIVATION : ACTIVE_TAG);
+    }
 }
 
 void SoftBodySolver::Work::endFailedStep()
@@ -290,6 +328,18 @@ void SoftBodySolver::Work::endFailedStep()
     m_state.m_statistics = StepStatistics();
     m_state.m_statistics.m_status |= kStepOutOfMemory;
     if (m_state.pipeline().deviceFailed()) m_state.m_statistics.m_status |= kStepDeviceFailed;
+}
+
+bool SoftBodySolver::Work::takesPair(const btSoftBody& body, const btSoftBody& other)
+{
+    const auto failed = [&](const CaughtException& caught)
+    {
+        m_state.fail("drape::SoftBodySolver::processCollision", caught);
+        return false;
+    };
+    if (!m_state.ready() || m_bodies.findLinearSearch2(const_cast<btSoftBody*>(&other)) < 0) return false;
+    if (reasonFromSettings(m_state, body) || reasonFromSettings(m_state, other)) return false;
+    return guarded([&] { return m_state.m_selfCollision.takes(body, other); }, failed);
 }
 
 void SoftBodySolver::Work::readByBullet(btSoftBody& body, const btCollisionObject& object)

@@ -51,6 +51,17 @@ ClothContacts& SoftBodySolver::Work::clothOf(const btSoftBody& body)
     return contacts ? contacts->m_contacts : substepsOf(body)->alone();
 }
 
+// Adds rows for the body's contacts with the meshes of dynamic bodies.
+void SoftBodySolver::Work::addDynamicRows(SubstepBody& substeps, const BodyContacts& body)
+{
+    if (body.m_dynamicContacts.empty()) return;
+    const ContactSource& source = m_state.m_found.source();
+    const BlockedNodes blocked(body.m_contacts);
+    for (const DynamicContact& dynamic : body.m_dynamicContacts)
+        substeps.addRow(dynamic.m_body, m_dt, body.m_contacts.resolve(source, *dynamic.m_contact), blocked,
+                        m_rigidBodies);
+}
+
 // Hands the bodies whose links the core solves to the solver, with their paths, unless they are solved.
 void SoftBodySolver::Work::takeSubsteps(const Bodies& bodies)
 {
@@ -73,6 +84,7 @@ void SoftBodySolver::Work::takeSubsteps(const Bodies& bodies)
         if (!kept) m_ends.emplace_back(&body, &cloth);
         if (cloth.m_isSolved) continue;
         substeps.addRows(body, cloth.m_nodes, m_rigidBodies);
+        if (const BodyContacts* const contacts = contactsOf(body)) addDynamicRows(substeps, *contacts);
         const bool isFree = !contactsOf(body) && !substeps.rigidRows();
         (isFree ? m_free : m_touched).push_back({&cloth, &substeps.substeps(), nullptr, substeps.rigidRows(), kept});
     }

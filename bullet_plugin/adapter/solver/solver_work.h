@@ -74,6 +74,8 @@ struct SoftBodySolver::Work
     // Prepares a body for Bullet's collision with an object, which reads the nodes and their tree. The object may have
     // moved since the step began.
     void readByBullet(btSoftBody& body, const btCollisionObject& object);
+    // Returns whether Drape finds the contacts of the two bodies, so that Bullet need not.
+    bool takesPair(const btSoftBody& body, const btSoftBody& other);
 
     // Parts of beginStep().
     void listTaken();
@@ -85,12 +87,14 @@ struct SoftBodySolver::Work
     // Parts of solveStep().
     void leaveToBullet();
     void chooseStage();
+    std::vector<PairNote> takeNotes();
     void detect();
     void endSubsteps();
     void solveBodies();
     void closeOffPath(const std::vector<BodyContacts*>& bodies);
     ClothRows* findMeetings();
     void guardMeetings();
+    void letSleep();
 
     // Prediction.
     void predict(const Bodies& bodies, btScalar dt);
@@ -105,6 +109,7 @@ struct SoftBodySolver::Work
     void beginSubsteps(const Bodies& bodies);
     void readPaths(const Bodies& bodies);
     void takeSubsteps(const Bodies& bodies);
+    void addDynamicRows(SubstepBody& substeps, const BodyContacts& body);
     void takeBulletsBodies(const Bodies& bodies);
     bool mayFollow() const;
     bool submitBehind(const Bodies& bodies, const ContactSource& source);

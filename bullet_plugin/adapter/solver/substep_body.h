@@ -79,6 +79,12 @@ public:
     void readPaths(const btSoftBody& body, ClothContacts* recorded, ThreadTeam* threads);
     // Adds rows for the rigid bodies that the body touches or hangs on, after readPaths(). nodes: those of it.
     void addRows(const btSoftBody& body, const SolverNodes& nodes, RigidBodies& bodies);
+    // Adds a row for a contact with the mesh of a dynamic body, after addRows().
+    void addRow(const DynamicBody& body, btScalar dt, const SolverContact& contact, const BlockedNodes& blocked,
+                RigidBodies& bodies)
+    {
+        bodies.addRow(body, dt, contact, blocked, m_rigidRows);
+    }
     // The cloth of a body without pairs.
     ClothContacts& alone() { return m_alone; }
     Substeps& substeps() { return m_substeps; }

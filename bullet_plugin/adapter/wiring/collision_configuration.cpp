@@ -16,8 +16,8 @@ btCollisionAlgorithmCreateFunc* CollisionConfiguration::getCollisionAlgorithmCre
     const auto stock = [&]
     { return btSoftBodyRigidBodyCollisionConfiguration::getCollisionAlgorithmCreateFunc(proxyType0, proxyType1); };
     if (!m_state) return stock();
-    if (proxyType0 == SOFTBODY_SHAPE_PROXYTYPE && isMeshShape(proxyType1)) return &m_state->createFunction(false);
-    if (isMeshShape(proxyType0) && proxyType1 == SOFTBODY_SHAPE_PROXYTYPE) return &m_state->createFunction(true);
+    if (proxyType0 == SOFTBODY_SHAPE_PROXYTYPE && isReadableType(proxyType1)) return &m_state->createFunction(false);
+    if (isReadableType(proxyType0) && proxyType1 == SOFTBODY_SHAPE_PROXYTYPE) return &m_state->createFunction(true);
     return stock();
 }
 }  // namespace drape

@@ -2,6 +2,7 @@
 #include "BulletCollision/BroadphaseCollision/btOverlappingPairCache.h"
 #include "BulletCollision/CollisionDispatch/btCollisionDispatcher.h"
 #include "BulletCollision/CollisionDispatch/btCollisionWorld.h"
+#include "BulletCollision/CollisionShapes/btCompoundShape.h"
 #include "drape/drape.h"
 #include "bullet_plugin/adapter/mirrors/mesh_reader.h"
 #include "bullet_plugin/adapter/wiring/plugin_state.h"
@@ -27,13 +28,13 @@ void cleanSoftPairs(btCollisionDispatcher& dispatcher, btBroadphaseInterface& br
         if (isSoft(pairs[i].m_pProxy0) || isSoft(pairs[i].m_pProxy1)) cache.cleanOverlappingPair(pairs[i], &dispatcher);
 }
 
-// Calls give(typeA, typeB) for the types of soft bodies and meshes, in both orders.
+// Calls give(typeA, typeB) for the types of soft bodies and of shapes that Drape may take, in both orders.
 template <class Give>
-void forMeshTypes(const Give& give)
+void forShapeTypes(const Give& give)
 {
     for (int type = 0; type < MAX_BROADPHASE_COLLISION_TYPES; ++type)
     {
-        if (!isMeshShape(type)) continue;
+        if (!isReadableType(type)) continue;
         give(SOFTBODY_SHAPE_PROXYTYPE, type);
         give(type, SOFTBODY_SHAPE_PROXYTYPE);
     }
@@ -49,6 +50,26 @@ btCollisionAlgorithmCreateFunc* stockFunction(btCollisionDispatcher& dispatcher,
 }
 }  // namespace
 
+bool takeGImpactBack(PluginState& state, const btSoftBody& cloth, const btCollisionObject& obstacle,
+                     const btCollisionShape& shape)
+{
+    if (shape.isCompound())
+    {
+        const auto& compound = static_cast<const btCompoundShape&>(shape);
+        for (int i = 0; i < compound.getNumChildShapes(); ++i)
+            if (takeGImpactBack(state, cloth, obstacle, *compound.getChildShape(i))) return true;
+        return false;
+    }
+    if (shape.getShapeType() != GIMPACT_SHAPE_PROXYTYPE) return false;
+    auto* const dispatcher = dynamic_cast<btCollisionDispatcher*>(cloth.m_worldInfo->m_dispatcher);
+    if (!dispatcher || pluginOf(*dispatcher, cloth, obstacle, shape) || pluginOf(*dispatcher) != &state) return true;
+    const int soft = SOFTBODY_SHAPE_PROXYTYPE, gimpact = GIMPACT_SHAPE_PROXYTYPE;
+    dispatcher->registerCollisionCreateFunc(soft, gimpact, &state.createFunction(false));
+    dispatcher->registerCollisionCreateFunc(gimpact, soft, &state.createFunction(true));
+    cleanSoftPairs(*dispatcher, *cloth.m_worldInfo->m_broadphase);
+    return true;
+}
+
 bool install(Plugin& plugin, btCollisionDispatcher& dispatcher, btBroadphaseInterface& broadphase)
 {
     if (!plugin.state()) return false;
@@ -63,7 +84,7 @@ bool install(Plugin& plugin, btCollisionDispatcher& dispatcher, btBroadphaseInte
                      {
                          const PluginState* owner = pluginOf(dispatcher);
                          if (owner && owner != &state) return false;
-                         forMeshTypes(give);
+                         forShapeTypes(give);
                          cleanSoftPairs(dispatcher, broadphase);
                          return true;
                      });
@@ -83,7 +104,7 @@ bool uninstall(Plugin& plugin, btCollisionDispatcher& dispatcher, btBroadphaseIn
                      [&]
                      {
                          if (pluginOf(dispatcher) != plugin.state().get()) return false;
-                         forMeshTypes(give);
+                         forShapeTypes(give);
                          cleanSoftPairs(dispatcher, broadphase);
                          return true;
                      });

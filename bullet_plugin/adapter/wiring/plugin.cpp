@@ -32,8 +32,7 @@ std::string reasonInShape(const PluginState& state, const btSoftBody& cloth, con
         const btTransform childPose = pose * compound.getChildTransform(i);
         const std::string reason = reasonInShape(state, cloth, obstacle, *compound.getChildShape(i), childPose);
         if (reason.empty()) continue;
-        const bool nobodys =
-            isMeshShape(compound.getChildShape(i)->getShapeType()) && !stockCanTake(obstacle, childPose);
+        const bool nobodys = isMeshShape(*compound.getChildShape(i)) && !stockCanTake(obstacle, childPose);
         return "child " + std::to_string(i) + " of the compound: " + reason +
                (nobodys ? "; Bullet's own algorithm would assume this mesh to be where the compound is, so that it "
                           "collides with nothing"

@@ -4,6 +4,7 @@
 
 #include "BulletCollision/CollisionDispatch/btCollisionDispatcher.h"
 #include "BulletSoftBody/btSoftBodySolvers.h"
+#include "bullet_plugin/adapter/mirrors/convex_reader.h"
 #include "bullet_plugin/adapter/pairs/eligibility.h"
 #include "bullet_plugin/core/scene/growing_arrays.h"
 #include "bullet_plugin/core/public_call.h"
@@ -11,9 +12,12 @@
 namespace drape
 {
 PluginState::PluginState(const Settings& settings)
-    : m_settings(settings), m_create(*this, false), m_createSwapped(*this, true)
+    : m_selfCollision(settings.m_solver != Solver::Bullet),
+      m_settings(settings),
+      m_create(*this, false),
+      m_createSwapped(*this, true)
 {
-    m_stockCreateSwapped.m_swapped = true;
+    m_stockCreateSwapped.m_swapped = m_stockConvexCreateSwapped.m_swapped = true;
     m_pipeline = guarded([&] { return Pipeline::create(settings, m_error); },
                          [&](const CaughtException& caught)
                          {
@@ -76,8 +80,9 @@ void PluginState::restart()
     m_mustRestart = false;
 }
 
-btCollisionAlgorithmCreateFunc& PluginState::stockCreateFunction(bool swapped)
+btCollisionAlgorithmCreateFunc& PluginState::stockCreateFunction(int shapeType, bool swapped)
 {
+    if (isConvexType(shapeType)) return swapped ? m_stockConvexCreateSwapped : m_stockConvexCreate;
     if (swapped) return m_stockCreateSwapped;
     return m_stockCreate;
 }

@@ -16,6 +16,7 @@
 
 #include "BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h"
 #include "BulletSoftBody/btSoftBodyConcaveCollisionAlgorithm.h"
+#include "BulletSoftBody/btSoftRigidCollisionAlgorithm.h"
 #include "drape/plugin.h"
 #include "bullet_plugin/adapter/cloth_cloth/self_collision.h"
 #include "bullet_plugin/adapter/collision/found_contacts.h"
@@ -39,9 +40,21 @@ struct PairNote
     const btSoftBodySolver* m_solver;
     btSoftBody* m_cloth;
     ObstacleKey m_obstacle;
-    bool m_kinematic;     // else the obstacle rests at the motion's end
-    BodyMotion m_motion;  // the shape's motion; the shape may be a compound's child
+    bool m_isMovable;        // else the obstacle rests at the motion's end
+    btRigidBody* m_dynamic;  // the obstacle's body if it is dynamic, else null
+    bool m_yields;           // such a body yields to the cloth
+    btTransform m_noted;     // pose of such a body at dispatch
+    btTransform m_place;     // the shape's pose in it
+    btVector3 m_velocity;    // m/s, of such a body at dispatch
+    BodyMotion m_motion;     // the shape's motion; the shape may be a compound's child
     btScalar m_thickness;
+
+    // Ends the motion of a dynamic obstacle's shape where the body stands.
+    void endMotion()
+    {
+        const btTransform& pose = m_dynamic->getWorldTransform();
+        m_motion.m_end = pose == m_noted ? m_motion.m_start : pose * m_place;
+    }
 };
 
 class PluginState
@@ -76,7 +89,8 @@ public:
     }
     // Returns whether any dispatcher was given the plugin's algorithms.
     bool isWired() const { return m_isWired; }
-    btCollisionAlgorithmCreateFunc& stockCreateFunction(bool swapped);
+    // Returns the function that makes Bullet's own algorithm beside a shape of that type.
+    btCollisionAlgorithmCreateFunc& stockCreateFunction(int shapeType, bool swapped);
 
     void addSolver(const btSoftBodySolver* solver);
     void removeSolver(const btSoftBodySolver* solver);
@@ -179,6 +193,7 @@ private:
     PairCreateFunction m_create, m_createSwapped;
     btSoftBodyConcaveCollisionAlgorithm::CreateFunc m_stockCreate;
     btSoftBodyConcaveCollisionAlgorithm::SwappedCreateFunc m_stockCreateSwapped;
+    btSoftRigidCollisionAlgorithm::CreateFunc m_stockConvexCreate, m_stockConvexCreateSwapped;
 
     bool m_isWired = false;
     std::vector<const btSoftBodySolver*> m_solvers;

@@ -92,9 +92,16 @@ void PluginState::note(const void* owner, btSoftBody& cloth, const btCollisionOb
     note.m_solver = steppingSolver(cloth);
     note.m_cloth = &cloth;
     note.m_obstacle = ObstacleKey{obstacle.getCollisionObject(), obstacle.getCollisionShape(), childOf(obstacle)};
-    note.m_kinematic = obstacle.getCollisionObject()->isKinematicObject();
-    note.m_motion = note.m_kinematic ? motionOfShape(obstacle, motionsOf(note.m_solver))
-                                     : BodyMotion{obstacle.getWorldTransform(), obstacle.getWorldTransform()};
+    btCollisionObject& object = *const_cast<btCollisionObject*>(obstacle.getCollisionObject());
+    const btTransform& pose = obstacle.getWorldTransform();
+    note.m_isMovable = !object.isStaticObject();
+    note.m_dynamic = object.isStaticOrKinematicObject() ? nullptr : btRigidBody::upcast(&object);
+    note.m_yields = note.m_dynamic != nullptr;
+    note.m_noted = object.getWorldTransform();
+    note.m_velocity = note.m_dynamic ? note.m_dynamic->getLinearVelocity() : btVector3(0, 0, 0);
+    note.m_place = note.m_noted == pose ? btTransform::getIdentity() : note.m_noted.inverse() * pose;
+    note.m_motion =
+        object.isKinematicObject() ? motionOfShape(obstacle, motionsOf(note.m_solver)) : BodyMotion{pose, pose};
     note.m_thickness = thicknessOf(cloth, *obstacle.getCollisionShape());
     const auto noted = m_noteOf.find(owner);
     if (noted != m_noteOf.end())
@@ -198,7 +205,7 @@ void PluginState::prepareShape(const btCollisionObjectWrapper& wrap)
     setPrepared(obstacle, true);
     obstacle.m_oneSided = isOneSided(shape);
     obstacle.m_continued = false;
-    obstacle.refresh(*m_pipeline, object.isKinematicObject(),
+    obstacle.refresh(*m_pipeline, !object.isStaticObject(),
                      BodyMotion{wrap.getWorldTransform(), wrap.getWorldTransform()});
 }
 
@@ -293,8 +300,13 @@ std::vector<PairNote> PluginState::takeNotes(const btSoftBodySolver* solver,
             taken.push_back(note);
     dropNotes(solver);
     ++m_step;
-    for (const PairNote& note : taken)
+    for (PairNote& note : taken)
+    {
         adopt(note);
+        if (!note.m_dynamic) continue;
+        note.m_motion.m_start = obstacleMirror(note).startOf(note.m_noted, note.m_place, note.m_motion.m_start);
+        note.endMotion();
+    }
     return taken;
 }
 

@@ -20,6 +20,13 @@ const PluginState* pluginOf(btDispatcher& dispatcher, const btSoftBody& cloth, c
 // Returns the state of the plugin whose algorithm the dispatcher gives to any pair; null if there is none.
 const PluginState* pluginOf(btDispatcher& dispatcher);
 
+// Takes pairs with GImpact shapes back where the app has called btGImpactCollisionAlgorithm::registerAlgorithm() since:
+// that gives the dispatcher an algorithm for every type of shape, which cannot handle soft bodies. Only for a
+// dispatcher that gives this plugin the other meshes. shape: of an object in the cloth's world, or of a child. Returns
+// whether it has a GImpact shape.
+bool takeGImpactBack(PluginState& state, const btSoftBody& cloth, const btCollisionObject& obstacle,
+                     const btCollisionShape& shape);
+
 // Returns the reason, in words, why Bullet's own algorithm handles the pair. Returns null if the dispatcher of the
 // objects' world has this plugin's algorithm, or if they are in no world.
 const char* reasonFromDispatcher(const PluginState& state, const btSoftBody& cloth, const btCollisionObject& obstacle,

@@ -47,6 +47,7 @@ struct ClothContacts
     float m_hardness = 0;          // see targetGap()
     float m_perSecond = 0;         // 1/s, steps per second
     float m_undamped = 1;          // share of a velocity that damping leaves in a step
+    bool m_movesOnly = false;      // closing sweeps leave velocities as they are
     bool m_mayHavePassed = false;  // a contact is left so near that a surface may have been passed
     bool m_isSolved = false;       // the step is solved
 
@@ -63,7 +64,7 @@ struct ClothContacts
         m_isFiltered = false;
         m_obstacles.clear();
         m_limit.clear();
-        m_mayHavePassed = m_isSolved = false;
+        m_movesOnly = m_mayHavePassed = m_isSolved = false;
     }
     // Gives the nodes the velocities that cuts of their paths left along surfaces.
     void addSlides()

@@ -15,8 +15,9 @@ namespace
 {
 // Minimum nodes for sharing cloths among threads; a substep takes 50 ns a node.
 constexpr std::size_t kLeastNodesShared = 2048;
-// Sweeps over rows of cloth with cloth after each sweep over links, and after the last substep.
-constexpr int kClothSweeps = 4, kClosingRowSweeps = 16;
+// Sweeps over rows of cloth with cloth, and of features beside rigid bodies, after each sweep over links. Then those of
+// cloth with cloth after the last substep.
+constexpr int kRowSweeps = 4, kClosingRowSweeps = 16;
 // Minimum nodes for sharing keepMomenta() among threads: it takes 20 ns a node.
 constexpr std::size_t kLeastKeepingShared = 8192;
 
@@ -47,6 +48,14 @@ bool isOpen(const ContactSweep* sweep, int done)
 bool obstaclesRest(const ContactSweep* sweep)
 {
     return sweep->contacts().m_limit.obstaclesRest();
+}
+
+// Calls call(rows) for all cloths with rows beside rigid bodies.
+template <class Call>
+void forRigid(const SweepTeam::Cloths& cloths, const Call& call)
+{
+    for (const ContactSweep* sweep : cloths)
+        if (RigidRows* rigid = sweep->cloth().m_rigid) call(*rigid);
 }
 
 // Copies the cloths of `from` for which predicate(cloth) is true to `to`, another list.
@@ -144,9 +153,7 @@ void StepSolver::restart(int iteration)
         const SolverCloth& cloth = sweep->cloth();
         const float passed = cloth.m_substeps ? float(iteration + 1) / float(cloth.m_substeps->count()) : 1.0f;
         sweep->restart(passed, cloth.m_substeps ? actingSweepsOf(cloth.m_substeps->count()) : 0);
-        if (!cloth.m_rigid) continue;
-        cloth.m_rigid->begin(sweep->nodes(), cloth.m_substeps->substepTime(), cloth.m_substeps->correctionTime(),
-                             passed);
+        if (cloth.m_rigid) cloth.m_rigid->begin(sweep->nodes(), *cloth.m_substeps, iteration);
     }
 }
 
@@ -159,10 +166,12 @@ void StepSolver::sweepInTurns()
         forSubsteps([](SolverNodes& nodes, Substeps& substeps, ThreadTeam* threads)
                     { substeps.sweepLinks(nodes, threads); });
         m_team.run(m_meeting);
-        for (const ContactSweep* sweep : m_turn)
-            if (RigidRows* rigid = sweep->cloth().m_rigid) rigid->project();
-        for (int k = 0; m_rows && k < kClothSweeps; ++k)
-            m_rows->project(DRAPE_TURN_RELAXATION, 0);
+        forRigid(m_turn, [](RigidRows& rigid) { rigid.project(); });
+        for (int k = 0; k < kRowSweeps; ++k)
+        {
+            forRigid(m_turn, [](RigidRows& rigid) { rigid.projectFeatures(DRAPE_TURN_RELAXATION); });
+            if (m_rows) m_rows->project(DRAPE_TURN_RELAXATION, 0);
+        }
     }
 }
 
@@ -199,8 +208,7 @@ void StepSolver::sweepContacts(int iteration)
     restart(iteration);
     if (m_rows) m_rows->begin();
     sweepInTurns();
-    for (const ContactSweep* sweep : m_iterating)
-        if (RigidRows* rigid = sweep->cloth().m_rigid) rigid->end();
+    forRigid(m_iterating, [](RigidRows& rigid) { rigid.end(); });
     select(m_iterating, m_turn, isCallers);
     const auto write = [](ContactSweep& sweep)
     {
@@ -306,8 +314,12 @@ void StepSolver::close()
     // obstacle keeps its faces and edges from passing it in a later step.
     m_team.runNodes(m_open);
     holdOthers();
-    m_team.forCloths(m_all, [](ContactSweep& sweep) { addShifts(sweep.contacts()); });
-    m_team.limitSpeeds(m_touching);
+    const auto gainsSpeed = [](const ContactSweep* sweep) { return !sweep->contacts().m_movesOnly; };
+    select(m_all, m_turn, gainsSpeed);
+    m_team.forCloths(m_turn, [](ContactSweep& sweep) { addShifts(sweep.contacts()); });
+    select(m_touching, m_turn, gainsSpeed);
+    m_team.limitSpeeds(m_turn);
+    forRigid(m_all, [](RigidRows& rigid) { rigid.limitSpeeds(); });
     if (m_rows && !m_all.empty()) m_rows->limitSpeeds(m_all.front()->contacts().m_perSecond);
     for (ContactSweep* sweep : m_touching)
         sweep->contacts().m_mayHavePassed = SweepTeam::mayHavePassed(*sweep);

@@ -177,6 +177,9 @@ public:
     // these bodies are solved on the host. Cloth that starts intersecting is pushed apart a little in every step, at a
     // tenth of the thickness at most, and kept apart as it comes apart; clothPairs() lists it. If memory runs out,
     // nothing changes. The body is remembered by its address until this is switched off.
+    //
+    // Bullet's flags do the same, with twice the margin: bodies with fCollision::VF_SS collide with each other, a body
+    // with CL_SELF or btSoftBody::setSelfCollision(true) with itself. With Solver::Bullet they are left to Bullet.
     void setSelfCollision(const btSoftBody& body, bool collides, double thickness = 0);
 
     // Makes only the front of a mesh shape solid: the side from which its triangles run counter-clockwise. Cloth behind

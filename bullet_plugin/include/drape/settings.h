@@ -50,6 +50,13 @@ enum class SolverPlace
     Device  // the plugin's OpenCL device, if it has one
 };
 
+// Selects who finds the contacts of cloth with the convex shapes of dynamic bodies: boxes, balls, hulls.
+enum class DynamicConvex
+{
+    Drape,  // Drape, where it solves the cloth: no triangle of the cloth passes through
+    Bullet  // Bullet, which holds nodes alone, so that heavy or fast bodies fall through; a device may solve the cloth
+};
+
 // Holds the choices of an app before Drape starts.
 struct Settings
 {
@@ -83,6 +90,15 @@ struct Settings
 
     // Selects where Drape's solver computes. The results do not depend on it.
     SolverPlace m_solverPlace = SolverPlace::Auto;
+
+    // Selects who finds contacts with convex shapes of dynamic bodies. Their meshes are always Drape's.
+    DynamicConvex m_dynamicConvex = DynamicConvex::Drape;
+
+    // Lets cloth at rest fall asleep as Bullet's rigid bodies do, and with it the bodies that lie on it. Bullet never
+    // does that in a btSoftRigidDynamicsWorld. Sleeping cloth costs nothing, and wakes when a dynamic body
+    // or a moving mesh comes near. It does not notice forces, wind, nodes or anchors that an app moves, or kinematic
+    // bodies of other shapes: call activate() then.
+    bool m_clothSleeps = false;
 
     // Number of threads, the caller's included: they solve contacts of large or many cloths, write nodes for a GPU, and
     // run the host back end. Range 0 to 64. 0 means the number of available cores, 8 at most; 1 means the caller's

@@ -19,7 +19,14 @@ typedef struct RigidSubstep
     float m_time;           // s, of the substep
     float m_perCorrection;  // 1/s, velocity per metre of a correction
     float m_passed;         // share of the step that has passed at the substep's end
+    float m_left;           // s, from the substep's start to the step's end
 } RigidSubstep;
+
+// Returns the time from a substep's start to the step's end, s. time: s, of each of `count` substeps.
+DRAPE_FUNCTION float rigidLeft(float time, DRAPE_UINT count, DRAPE_UINT substep)
+{
+    return time * (float)(count - substep);
+}
 
 DRAPE_FUNCTION Vec3 rigidProduct(const DRAPE_GLOBAL Vec3* rows, Vec3 v)
 {
@@ -46,21 +53,43 @@ DRAPE_FUNCTION float rigidMobility(const RigidSubstep* substep, const DRAPE_GLOB
     return vec3Dot(direction, velocity) * (substep->m_time * substep->m_perCorrection);
 }
 
+// Gives the body an impulse at a point, N s.
+DRAPE_FUNCTION void rigidGive(const RigidSubstep* substep, DRAPE_GLOBAL RigidBody* body, Vec3 arm, Vec3 impulse)
+{
+    const Vec3 turning = vec3Cross(arm, impulse), velocity = rigidByAxis(body->m_inverseMass, impulse);
+    const Vec3 spin = rigidProduct(body->m_inverseInertia, turning);
+    body->m_velocity = vec3Add(body->m_velocity, velocity);
+    body->m_spin = vec3Add(body->m_spin, spin);
+    body->m_impulse = vec3Add(body->m_impulse, impulse);
+    body->m_turning = vec3Add(body->m_turning, turning);
+    Vec3 centre = body->m_centre;
+    if (body->m_follows)
+    {
+        body->m_shift = vec3AddScaled(body->m_shift, velocity, substep->m_left);
+        body->m_turn = vec3AddScaled(body->m_turn, spin, substep->m_left);
+        // The body's place as the substep begins.
+        const Vec3 motion = vec3Add(body->m_velocity, body->m_displaced);
+        centre = vec3AddScaled(vec3Add(centre, body->m_shift), motion, -substep->m_left);
+        centre =
+            vec3AddScaled(centre, body->m_acceleration, 0.5f * substep->m_left * (substep->m_left - substep->m_time));
+    }
+    DRAPE_GLOBAL RigidGiven* given = substep->m_given;
+    const Vec3 from = vec3Add(vec3Sub(centre, given->m_reference), arm);
+    given->m_impulse = vec3Add(given->m_impulse, impulse);
+    given->m_turning = vec3Add(given->m_turning, vec3Cross(from, impulse));
+}
+
+DRAPE_FUNCTION void rigidShiftNode(const RigidSubstep* substep, DRAPE_UINT node, Vec3 by)
+{
+    nodeShift(substep->m_nodes + node, substep->m_states + node, vec3Scale(by, substep->m_nodes[node].m_inverseMass));
+}
+
 // Pushes the node, and the body the other way. by: direction times multiplier, kg m.
 DRAPE_FUNCTION void rigidPush(const RigidSubstep* substep, DRAPE_UINT node, DRAPE_GLOBAL RigidBody* body, Vec3 arm,
                               Vec3 by)
 {
-    nodeShift(substep->m_nodes + node, substep->m_states + node, vec3Scale(by, substep->m_nodes[node].m_inverseMass));
-    if (!body->m_moves) return;
-    const Vec3 impulse = vec3Scale(by, -substep->m_perCorrection), turning = vec3Cross(arm, impulse);
-    body->m_velocity = vec3Add(body->m_velocity, rigidByAxis(body->m_inverseMass, impulse));
-    body->m_spin = vec3Add(body->m_spin, rigidProduct(body->m_inverseInertia, turning));
-    body->m_impulse = vec3Add(body->m_impulse, impulse);
-    body->m_turning = vec3Add(body->m_turning, turning);
-    DRAPE_GLOBAL RigidGiven* given = substep->m_given;
-    const Vec3 from = vec3Add(vec3Sub(body->m_centre, given->m_reference), arm);
-    given->m_impulse = vec3Add(given->m_impulse, impulse);
-    given->m_turning = vec3Add(given->m_turning, vec3Cross(from, impulse));
+    rigidShiftNode(substep, node, by);
+    if (body->m_moves) rigidGive(substep, body, arm, vec3Scale(by, -substep->m_perCorrection));
 }
 
 DRAPE_FUNCTION void rigidBeginRow(DRAPE_GLOBAL RigidRowState* state)
@@ -76,6 +105,42 @@ DRAPE_FUNCTION void rigidEndRow(const RigidSubstep* substep, DRAPE_UINT body, Ve
     state->m_carried = vec3AddScaled(state->m_carried, rigidVelocity(substep->m_bodies + body, arm), substep->m_time);
 }
 
+// Returns the displacement of a body's point from the step's start to the substep's end, m.
+DRAPE_FUNCTION Vec3 rigidCarried(const RigidSubstep* substep, const DRAPE_GLOBAL RigidBody* body, Vec3 arm,
+                                 const DRAPE_GLOBAL RigidRowState* state)
+{
+    return vec3AddScaled(state->m_carried, rigidVelocity(body, arm), substep->m_time);
+}
+
+// Returns how far a point beside a plane is below the level that the step allows, m. displacement: m, of the point,
+// less that of the plane.
+DRAPE_FUNCTION float rigidViolation(const DRAPE_GLOBAL RigidPlane* plane, Vec3 displacement, float passed)
+{
+    const float level = plane->m_gap < 0.0f ? plane->m_recover * passed : -plane->m_gap;
+    return level - vec3Dot(plane->m_normal, displacement);
+}
+
+// Computes the push that makes a contact hold, or takes back an earlier push that is not needed any more. mobility:
+// 1/kg, of both sides. relaxation: share of a violation that is corrected. by: kg m, for the cloth. Returns whether
+// there is anything to do.
+DRAPE_FUNCTION int rigidContactPush(const DRAPE_GLOBAL RigidPlane* contact, Vec3 displacement, float passed,
+                                    float mobility, float relaxation, DRAPE_GLOBAL RigidRowState* state, Vec3* by)
+{
+    const RigidPlane plane = *contact;
+    const float inverseMobility = 1.0f / drapeMax(mobility, 1e-30f);
+    const float along = vec3Dot(plane.m_normal, displacement), before = state->m_multiplier;
+    const float violation = rigidViolation(contact, displacement, passed);
+    if (!(violation > 0.0f) && !(before > 0.0f)) return 0;
+    const float pushed = drapeMax(0.0f, before + relaxation * violation * inverseMobility);
+    Vec3 held = vec3AddScaled(state->m_held, vec3AddScaled(displacement, plane.m_normal, -along), -inverseMobility);
+    const float most = plane.m_friction * pushed, wanted = vec3Length(held);
+    if (wanted > most) held = vec3Scale(held, most / wanted);
+    *by = vec3AddScaled(vec3Sub(held, state->m_held), plane.m_normal, pushed - before);
+    state->m_multiplier = pushed;
+    state->m_held = held;
+    return 1;
+}
+
 DRAPE_FUNCTION void rigidProjectContact(const RigidSubstep* substep, const DRAPE_GLOBAL RigidContact* contact,
                                         DRAPE_GLOBAL RigidRowState* state)
 {
@@ -83,23 +148,12 @@ DRAPE_FUNCTION void rigidProjectContact(const RigidSubstep* substep, const DRAPE
     const float inverseMass = substep->m_paths[contact->m_node].m_inverseMass;
     if (!(inverseMass > 0.0f)) return;
     const Vec3 arm = contact->m_arm;
-    const RigidPlane plane = contact->m_plane;
-    const Vec3 carried = vec3AddScaled(state->m_carried, rigidVelocity(body, arm), substep->m_time);
-    const Vec3 displacement = vec3Sub(substep->m_nodes[contact->m_node].m_displacement, carried);
-    const float mobility = inverseMass + rigidMobility(substep, body, arm, plane.m_normal);
-    const float inverseMobility = 1.0f / drapeMax(mobility, 1e-30f);
-    const float along = vec3Dot(plane.m_normal, displacement);
-    const float level = plane.m_gap < 0.0f ? plane.m_recover * substep->m_passed : -plane.m_gap;
-    const float violation = level - along, before = state->m_multiplier;
-    if (!(violation > 0.0f) && !(before > 0.0f)) return;
-    const float pushed = drapeMax(0.0f, before + violation * inverseMobility);
-    Vec3 held = vec3AddScaled(state->m_held, vec3AddScaled(displacement, plane.m_normal, -along), -inverseMobility);
-    const float most = plane.m_friction * pushed, wanted = vec3Length(held);
-    if (wanted > most) held = vec3Scale(held, most / wanted);
-    const Vec3 by = vec3AddScaled(vec3Sub(held, state->m_held), plane.m_normal, pushed - before);
-    state->m_multiplier = pushed;
-    state->m_held = held;
-    rigidPush(substep, contact->m_node, body, arm, by);
+    const Vec3 displacement =
+        vec3Sub(substep->m_nodes[contact->m_node].m_displacement, rigidCarried(substep, body, arm, state));
+    const float mobility = inverseMass + rigidMobility(substep, body, arm, contact->m_plane.m_normal);
+    Vec3 by;
+    if (rigidContactPush(&contact->m_plane, displacement, substep->m_passed, mobility, 1.0f, state, &by))
+        rigidPush(substep, contact->m_node, body, arm, by);
 }
 
 DRAPE_FUNCTION void rigidProjectAnchor(const RigidSubstep* substep, const DRAPE_GLOBAL RigidAnchor* anchor,
