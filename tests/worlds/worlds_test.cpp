@@ -141,6 +141,15 @@ void expectGood(const std::vector<NamedWorld>& named, WorldBackend backend)
     }
 }
 
+// Bodies push cloth out of the bounds in which Bullet looked for its pairs, into a floor or another body.
+TEST(Worlds, LoadsPushClothIntoNothingUnseen)
+{
+    expectGood({{"loads", 8584, "friction,compound,multiple"},
+                {"loads", 7091, "stiff,time,aero,friction"},
+                {"loads", 5348, "masses,compound,kinematic,fine_cloth"}},
+               WorldBackend::Substeps);
+}
+
 // Worlds whose cloth once flew apart with substeps, until a step took minutes. Limits beside a moving obstacle threw
 // it, or links corrected a long step's errors in a short one, or anchors fought with a light body.
 TEST(Worlds, SubstepsKeepClothTogether)

@@ -53,7 +53,7 @@ public:
     // Detects along the bodies' real paths, which end at their current positions.
     void detectRealPaths();
     // Returns whether a path of the last detection passes a surface.
-    bool passesSurface(const BodyContacts& body) const { return anyCuts(impactsOf(body)); }
+    bool passesSurface(const BodyContacts& body) const { return anyCuts(impactsOf(body)) || endsBehind(body); }
     // Reports, after finish(), a body without a pair in this step whose nodes are still not finite, as they were when
     // it had one.
     void reportInvalid(const btSoftBody& body);
@@ -117,6 +117,7 @@ private:
     void receive(const ContactList& contacts, Detection detection);
     std::vector<SolverContact> impactsOf(const BodyContacts& body) const;
     std::vector<const Pair*> findJammed(std::vector<bool>& isJammed) const;
+    static bool endsBehind(const BodyContacts& body);
     bool holdStill();
     void reportPassed();
     std::vector<SolverContact> dynamicImpactsOf(const BodyContacts& body) const;

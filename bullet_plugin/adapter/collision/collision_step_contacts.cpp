@@ -4,6 +4,7 @@
 
 #include "bullet_plugin/adapter/collision/collision_step.h"
 #include "bullet_plugin/adapter/collision/stretch.h"
+#include "bullet_plugin/adapter/motion/bounds_guard.h"
 #include "bullet_plugin/adapter/solver/body_nodes.h"
 #include "bullet_plugin/core/pipeline/add_detection.h"
 #include "bullet_plugin/core/stopwatch.h"
@@ -231,6 +232,19 @@ bool CollisionStep::cutOffPath(Cut cut)
     return any;
 }
 
+// Returns whether cloth beside dynamic obstacles ends the last detection's paths behind a surface, however short these
+// were: several bodies may squeeze it.
+bool CollisionStep::endsBehind(const BodyContacts& body)
+{
+    if (!body.m_hasDynamicPair || !body.m_tangled.empty()) return false;
+    const auto isBehind = [](const FeatureContacts& feature)
+    {
+        return std::any_of(feature.m_contacts, feature.m_contacts + feature.m_count,
+                           [](const Contact& contact) { return contact.m_gap1 < 0; });
+    };
+    return std::any_of(body.m_contacts.m_features.begin(), body.m_contacts.m_features.end(), isBehind);
+}
+
 // Marks the bodies beside dynamic obstacles that leave cloth no room, and all bodies that share these obstacles with
 // them. Lists the obstacles.
 std::vector<const CollisionStep::Pair*> CollisionStep::findJammed(std::vector<bool>& isJammed) const
@@ -238,7 +252,11 @@ std::vector<const CollisionStep::Pair*> CollisionStep::findJammed(std::vector<bo
     std::vector<const Pair*> pairs;
     std::unordered_set<const btRigidBody*> objects;
     for (std::size_t i = 0; i < m_bodies.size(); ++i)
-        isJammed.push_back(m_bodies[i].m_isOffPath && m_bodies[i].m_hasDynamicPair && anyCuts(impactsOf(m_bodies[i])));
+    {
+        const BodyContacts& body = m_bodies[i];
+        isJammed.push_back(body.m_isOffPath && body.m_hasDynamicPair &&
+                           (passesSurface(body) || leavesBounds(m_state, *body.m_body)));
+    }
     for (bool grows = true; grows;)
     {
         grows = false;
@@ -380,6 +398,7 @@ std::vector<BodyContacts*> CollisionStep::checkOffPath()
         }
         if (!cutOffPath(detections < kMostDetections ? Cut::EachNode : Cut::WholeBody)) break;
     }
+    if (holdStill()) detectRealPaths();
     bodies.erase(std::remove_if(bodies.begin(), bodies.end(), [](const BodyContacts* body) { return body->m_leftOut; }),
                  bodies.end());
     return bodies;

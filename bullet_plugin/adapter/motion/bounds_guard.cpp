@@ -2,6 +2,8 @@
 
 #include "BulletCollision/BroadphaseCollision/btBroadphaseInterface.h"
 #include "BulletCollision/BroadphaseCollision/btOverlappingPairCache.h"
+#include "BulletCollision/CollisionShapes/btCompoundShape.h"
+#include "LinearMath/btAabbUtil2.h"
 #include "bullet_plugin/adapter/collision/body_contacts.h"
 #include "bullet_plugin/adapter/motion/motion_bounds.h"
 #include "bullet_plugin/adapter/vectors.h"
@@ -10,19 +12,49 @@ namespace drape
 {
 namespace
 {
+// A box, m.
+struct Bounds
+{
+    btVector3 m_low, m_high;
+
+    bool meets(const Bounds& other) const { return TestAabbAgainstAabb2(m_low, m_high, other.m_low, other.m_high); }
+};
+
+// Returns whether a leaf of the shape meets the nodes and not the bounds: the broad phase may still have a pair of an
+// object that has gone, and a compound makes pairs of the children that meet the bounds alone.
+bool isMissed(const btCollisionShape& shape, const btTransform& pose, const Bounds& nodes, const Bounds& bounds)
+{
+    if (!shape.isCompound())
+    {
+        Bounds own;
+        shape.getAabb(pose, own.m_low, own.m_high);
+        return own.meets(nodes) && !own.meets(bounds);
+    }
+    const auto& compound = static_cast<const btCompoundShape&>(shape);
+    for (int i = 0; i < compound.getNumChildShapes(); ++i)
+        if (isMissed(*compound.getChildShape(i), pose * compound.getChildTransform(i), nodes, bounds)) return true;
+    return false;
+}
+
 // Looks for a mesh that Drape would handle and that has no pair with the body.
 class FindUnpaired : public btBroadphaseAabbCallback
 {
 public:
-    FindUnpaired(const PluginState& state, btSoftBody& body) : m_state(state), m_body(body) {}
+    FindUnpaired(const PluginState& state, btSoftBody& body, const Bounds& nodes)
+        : m_state(state), m_body(body), m_nodes(nodes), m_bounds{body.m_bounds[0], body.m_bounds[1]}
+    {
+    }
 
     bool process(const btBroadphaseProxy* proxy) override
     {
         const btCollisionObject* const object = static_cast<const btCollisionObject*>(proxy->m_clientObject);
-        if (!object || object == &m_body || !object->getCollisionShape()) return true;
+        // Bullet goes on after false, too.
+        if (m_found || !object || object == &m_body || !object->getCollisionShape()) return !m_found;
         btOverlappingPairCache* const pairs = m_body.m_worldInfo->m_broadphase->getOverlappingPairCache();
+        const btCollisionShape& shape = *object->getCollisionShape();
         m_found = mayTouch(m_state, m_body, *object) &&
-                  !pairs->findPair(m_body.getBroadphaseHandle(), const_cast<btBroadphaseProxy*>(proxy));
+                  (!pairs->findPair(m_body.getBroadphaseHandle(), const_cast<btBroadphaseProxy*>(proxy)) ||
+                   isMissed(shape, object->getWorldTransform(), m_nodes, m_bounds));
         return !m_found;
     }
 
@@ -31,6 +63,7 @@ public:
 private:
     const PluginState& m_state;
     btSoftBody& m_body;
+    const Bounds m_nodes, m_bounds;
 };
 
 btVector3 clamped(const btVector3& place, const btVector3& low, const btVector3& high)
@@ -42,7 +75,7 @@ btVector3 clamped(const btVector3& place, const btVector3& low, const btVector3&
 }
 }  // namespace
 
-bool holdInBounds(const PluginState& state, btSoftBody& body, BodyContacts* contacts)
+bool leavesBounds(const PluginState& state, btSoftBody& body)
 {
     const btBroadphaseProxy* const proxy = body.getBroadphaseHandle();
     if (!proxy || !body.m_worldInfo || !body.m_worldInfo->m_broadphase || body.m_nodes.size() == 0) return false;
@@ -54,9 +87,15 @@ bool holdInBounds(const PluginState& state, btSoftBody& body, BodyContacts* cont
         greatest.setMax(body.m_nodes[i].m_x);
     }
     if (!((low - least).length2() > 0) && !((greatest - high).length2() > 0)) return false;
-    FindUnpaired unpaired(state, body);
+    FindUnpaired unpaired(state, body, {least, greatest});
     body.m_worldInfo->m_broadphase->aabbTest(least, greatest, unpaired);
-    if (!unpaired.m_found) return false;
+    return unpaired.m_found;
+}
+
+bool holdInBounds(const PluginState& state, btSoftBody& body, BodyContacts* contacts)
+{
+    if (!leavesBounds(state, body)) return false;
+    const btVector3 low = body.getBroadphaseHandle()->m_aabbMin, high = body.getBroadphaseHandle()->m_aabbMax;
     bool any = false;
     for (int i = 0; i < body.m_nodes.size(); ++i)
     {

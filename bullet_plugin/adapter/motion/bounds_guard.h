@@ -12,7 +12,11 @@ namespace drape
 class PluginState;
 struct BodyContacts;
 
-// Moves nodes back to the bounds; their velocities lose the distance divided by the step's time. contacts: of the body,
-// whose nodes are moved, too; null without a pair. Call after the body's nodes are written. Returns whether any moved.
+// Returns whether a node is outside of the bounds where a mesh may be that has no pair with the body.
+bool leavesBounds(const PluginState& state, btSoftBody& body);
+
+// Moves such nodes back to the bounds; their velocities lose the distance divided by the step's time. contacts: of the
+// body, whose nodes are moved, too; null without a pair. Call after the body's nodes are written. Returns whether any
+// moved.
 bool holdInBounds(const PluginState& state, btSoftBody& body, BodyContacts* contacts);
 }  // namespace drape

@@ -178,6 +178,7 @@ public:
         StepObstacle obstacle;
         obstacle.m_object = object;
         obstacle.m_motion = motionOf(*object);
+        obstacle.m_isDynamic = !object->isStaticOrKinematicObject();
         shape.getAabb(pose, obstacle.m_low, obstacle.m_high);
         // Bullet's box of a dynamic body changes with its velocity.
         const bool mayChange = isMeshShape(shape) && object->isStaticOrKinematicObject() && !obstacle.m_motion.moves();
@@ -223,7 +224,35 @@ private:
     const btScalar m_activation;
     const bool m_resting;
 };
-void coverMotion(const PluginState& state, btSoftBody& body, const BodyPath& bodyPath,
+
+// Returns how far a dynamic body's points come in the step, m, at most.
+btScalar wayOf(const StepObstacle& obstacle)
+{
+    const BodyMotion& motion = obstacle.m_motion;
+    const btScalar turn = motion.m_start.getRotation().angleShortestPath(motion.m_end.getRotation());
+    return (motion.m_end.getOrigin() - motion.m_start.getOrigin()).length() +
+           turn * (obstacle.m_high - obstacle.m_low).length();
+}
+
+// Returns how far a hit may bring a dynamic body from where Bullet predicts it, m: a heavy body that meets a light one
+// leaves it with twice its own speed.
+btScalar farthestStray(const std::vector<BodyPath>& paths, const std::vector<StepObstacle>& obstacles)
+{
+    btScalar most = 0;
+    for (const StepObstacle& obstacle : obstacles)
+        if (obstacle.m_isDynamic && obstacle.m_motion.moves()) most = std::max(most, wayOf(obstacle));
+    if (most == 0) return 0;
+    for (const BodyPath& path : paths)
+    {
+        if (path.m_end.empty() || path.m_start.empty()) continue;
+        most = std::max(most, (path.m_end.m_low - path.m_start.m_low).length());
+        most = std::max(most, (path.m_end.m_high - path.m_start.m_high).length());
+    }
+    return 2 * most;
+}
+
+// farthest: m, see farthestStray().
+void coverMotion(const PluginState& state, btSoftBody& body, const BodyPath& bodyPath, btScalar farthest,
                  const std::vector<StepObstacle>& obstacles)
 {
     if (bodyPath.m_end.empty()) return;
@@ -241,7 +270,8 @@ void coverMotion(const PluginState& state, btSoftBody& body, const BodyPath& bod
         const btScalar reach = own + obstacle.m_reach;
         const Extent seen = obstacle.m_motion.moves() ? bodyPath.seenBy(obstacle) : path;
         const btScalar nearness = reach + kNearThresholds * gContactBreakingThreshold;
-        const bool mayArrive = obstacle.m_change > 0 && path.meets(obstacle, reach + 2 * obstacle.m_change);
+        const btScalar stray = obstacle.m_isDynamic ? farthest : 2 * obstacle.m_change;
+        const bool mayArrive = stray > 0 && path.meets(obstacle, reach + stray);
         if (!path.meets(obstacle, nearness) && !seen.meets(obstacle, nearness) && !mayArrive) continue;
         if (!mayTouch(state, body, *obstacle.m_object)) continue;
         if (mayArrive) reachTo(body, path, obstacle);
@@ -299,8 +329,9 @@ void coverMotions(const PluginState& state, const std::vector<btSoftBody*>& bodi
     std::vector<BodyPath> paths(bodies.size());
     forBodies(bodies.size(), threads, sizeOf,
               [&](std::size_t i, ThreadTeam* team) { paths[i] = BodyPath::of(state, *bodies[i], team); });
+    const btScalar farthest = farthestStray(paths, obstacles);
     // Filters of the app are called on this thread alone.
     for (std::size_t i = 0; i < bodies.size(); ++i)
-        if (bodies[i]->isActive()) coverMotion(state, *bodies[i], paths[i], obstacles);
+        if (bodies[i]->isActive()) coverMotion(state, *bodies[i], paths[i], farthest, obstacles);
 }
 }  // namespace drape

@@ -30,6 +30,8 @@ struct StepObstacle
     btScalar m_change;        // m, of the side of a mesh's bounds that moved most since the step before because its
                               // vertices move; 0 where none does
 
+    bool m_isDynamic;  // its motion is a prediction, which other bodies may change
+
     bool isActive() const { return m_motion.moves() || m_change > 0; }
 };
 
@@ -47,7 +49,8 @@ std::vector<StepObstacle> stepObstacles(const PluginState& state, const btSoftBo
 bool isReached(const PluginState& state, const btSoftBody& body, const std::vector<StepObstacle>& obstacles);
 
 // Widens the bounds of awake handled bodies near an obstacle of a pair that Drape handles. They cover the nodes' paths,
-// and those paths relative to moving obstacles, grown by the reach of contacts. They reach a deforming mesh one step
+// and those paths relative to moving obstacles, grown by the reach of contacts. They reach dynamic bodies that a hit by
+// the fastest body or cloth of the step might bring near. They reach a deforming mesh one step
 // before it may arrive: its vertices' motion is known from a pair's second step on. Bounds that are NaN, because of
 // an invalid node, become those of the other nodes if there is any obstacle. Bullet would otherwise stop simulating
 // the body.

@@ -247,7 +247,7 @@ void SoftBodySolver::Work::closeOffPath(const std::vector<BodyContacts*>& bodies
     m_step->detectRealPaths();
     for (std::size_t i = 0; i < bodies.size(); ++i)
     {
-        if (!m_step->passesSurface(*bodies[i])) continue;
+        if (!m_step->passesSurface(*bodies[i]) && !leavesBounds(m_state, *bodies[i]->m_body)) continue;
         for (std::size_t node = 0; node < checked[i].count(); ++node)
             writeNode(checked[i], node, bodies[i]->m_body->m_nodes[int(node)]);
     }
