@@ -41,9 +41,12 @@ const SelfColliding* SelfCollision::find(const btSoftBody& body)
         }
         if (found == m_bodies.end()) found = m_bodies.emplace(&body, SelfColliding()).first;
         const int proxy = body.getBroadphaseHandle() ? body.getBroadphaseHandle()->m_uniqueId : 0;
-        if (found->second.m_proxy != proxy) ++found->second.m_revision;
-        if (found->second.m_proxy != proxy) found->second.m_rest.clear();
-        found->second.m_proxy = proxy;
+        if (found->second.m_proxy != proxy)
+        {
+            ++found->second.m_revision;
+            found->second.m_rest.clear();
+            found->second.m_proxy = proxy;
+        }
         found->second.m_meetsItself = meetsItself;
         found->second.m_meetsOthers = meetsOthers;
     }

@@ -103,8 +103,7 @@ void CollisionStep::giveBackRoom()
 CollisionStep::Pair CollisionStep::makePair(const PairNote& note, const ClothMirror& cloth, MeshId obstacle)
 {
     const ObstacleMirror& mirror = m_state.obstacleMirror(note);
-    Pair pair = {cloth.id(), obstacle, note.m_thickness, nullptr, {&cloth, &mirror, note.m_motion, note.m_isMovable},
-                 note};
+    Pair pair = {cloth.id(), obstacle, nullptr, {&cloth, &mirror, note.m_motion, note.m_isMovable}, note};
     if (!mirror.before()) return pair;
     bringToHost(*bodyOf(cloth.id()));
     const btScalar reach = note.m_thickness * (1 + btScalar(m_state.settings().m_activation));
@@ -278,7 +277,7 @@ void CollisionStep::namePairs(Detection detection)
     for (const Pair& pair : m_pairs)
     {
         if (!isDetected(*bodyOf(pair.m_cloth), detection)) continue;
-        m_state.pipeline().addPair(pair.m_cloth, pair.m_obstacle, static_cast<float>(pair.m_thickness));
+        m_state.pipeline().addPair(pair.m_cloth, pair.m_obstacle, static_cast<float>(pair.m_note.m_thickness));
     }
 }
 

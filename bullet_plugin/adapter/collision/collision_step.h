@@ -77,8 +77,7 @@ public:
 private:
     struct Pair
     {
-        MeshId m_cloth, m_obstacle;  // m_cloth: the pair's own mesh of the cloth if its obstacle deforms
-        btScalar m_thickness;
+        MeshId m_cloth, m_obstacle;   // m_cloth: the pair's own mesh of the cloth if its obstacle deforms
         const Vec3* m_carriedStarts;  // carried starts in that case, see Carry; else null
         StartingPair m_start;
         PairNote m_note;

@@ -398,7 +398,11 @@ std::vector<BodyContacts*> CollisionStep::checkOffPath()
         }
         if (!cutOffPath(detections < kMostDetections ? Cut::EachNode : Cut::WholeBody)) break;
     }
-    if (holdStill()) detectRealPaths();
+    if (holdStill())
+    {
+        detectRealPaths();
+        reportPassed();
+    }
     bodies.erase(std::remove_if(bodies.begin(), bodies.end(), [](const BodyContacts* body) { return body->m_leftOut; }),
                  bodies.end());
     return bodies;

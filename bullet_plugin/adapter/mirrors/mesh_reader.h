@@ -3,7 +3,7 @@
 // Input: a mesh or a convex shape (convex_reader.h) and a pose. Output: triangles and world positions (m) for the core,
 // transformed in btScalar before they are rounded to float. Unused vertices are left out, and so are triangles with a
 // negative index or a vertex that is not finite. Like Bullet, this trusts indices and not the number of vertices that
-// a part states. Cost: a few passes over the mesh; meshSignature() reads a bounded number of vertices only.
+// a part states. Cost: a few passes over the mesh; meshSignature() reads a bounded number of a mesh's vertices.
 #pragma once
 
 #include <cstdint>
@@ -42,6 +42,7 @@ btScalar marginBeyondBounds(const btCollisionShape& shape);
 
 void readMesh(const btCollisionShape& shape, const btTransform& pose, WorldMesh& mesh);
 
-// Changes when the mesh's arrays, counts, scaling, bounding box or one of the sampled vertices change.
+// Changes when the mesh's arrays, counts, scaling, bounding box or one of the sampled vertices change. All points of a
+// convex shape count (listSurface()), some 480 of a round one.
 std::uint64_t meshSignature(const btCollisionShape& shape);
 }  // namespace drape
