@@ -40,6 +40,25 @@ int exactOrientation(const Vector3& a, const Vector3& b, const Vector3& c, const
     return sgn(volume);
 }
 
+// Computes a difference; returns whether it is exact.
+bool subtractExactly(double a, double b, double& difference)
+{
+    difference = a - b;
+    const double back = a - difference;
+    return (a - (difference + back)) + (back - b) == 0;
+}
+
+// Computes the sign of the area of a, b, c in a view; returns whether no step is rounded, as with most floats.
+bool unroundedOrientation2(const Vector3& a, const Vector3& b, const Vector3& c, int u, int v, int& sign)
+{
+    double p, q, r, s;
+    if (!subtractExactly(a[u], c[u], p) || !subtractExactly(b[v], c[v], q)) return false;
+    if (!subtractExactly(a[v], c[v], r) || !subtractExactly(b[u], c[u], s)) return false;
+    const double left = p * q, right = r * s;
+    sign = (left > right) - (left < right);
+    return std::fma(p, q, -left) == 0 && std::fma(r, s, -right) == 0;
+}
+
 // Returns the sign of the area of a, b, c seen along an axis.
 int orientation2(const Vector3& a, const Vector3& b, const Vector3& c, int along)
 {
@@ -49,6 +68,7 @@ int orientation2(const Vector3& a, const Vector3& b, const Vector3& c, int along
     const double area = left - right;
     if (std::fabs(area) > kBound2 * (std::fabs(left) + std::fabs(right))) return signOf(area);
     if (areSame(a, b) || areSame(b, c) || areSame(c, a)) return 0;
+    if (int sign = 0; unroundedOrientation2(a, b, c, u, v, sign)) return sign;
     const mpq_class exact = (mpq_class(a[u]) - mpq_class(c[u])) * (mpq_class(b[v]) - mpq_class(c[v])) -
                             (mpq_class(a[v]) - mpq_class(c[v])) * (mpq_class(b[u]) - mpq_class(c[u]));
     return sgn(exact);
@@ -118,7 +138,7 @@ int orientation(const Vector3& a, const Vector3& b, const Vector3& c, const Vect
                              (std::fabs(ca1) + std::fabs(ca2)) * std::fabs(ad.y) +
                              (std::fabs(ab1) + std::fabs(ab2)) * std::fabs(ad.z);
     if (std::fabs(volume) > kBound3 * permanent) return signOf(volume);
-    return anySame(a, b, c, d) ? 0 : exactOrientation(a, b, c, d);
+    return permanent == 0 || anySame(a, b, c, d) ? 0 : exactOrientation(a, b, c, d);
 }
 
 bool segmentMeetsTriangle(const Vector3& p, const Vector3& q, const Vector3 t[3])

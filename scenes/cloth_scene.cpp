@@ -82,7 +82,8 @@ SceneObstacle table(double size)
 // A square sheet between two clamps that turn against each other, eight turns in all, and come nearer.
 void twist(const ClothSceneSize& size, ClothScene& scene)
 {
-    constexpr double kSize = 1, kTurns = 4, kNearer = 0.6;
+    constexpr double kSize = 1, kNearer = 0.6;
+    const double turns = 4 * std::min(1.0, size.m_detail / 3.0);  // either side's; coarse cloth cannot take more
     scene.m_thickness = 0.005;
     scene.m_seconds = 16;
     const int nodes = int(std::lround(50 * size.m_detail / 3.0));
@@ -90,10 +91,10 @@ void twist(const ClothSceneSize& size, ClothScene& scene)
     hold(cloth, [](const Vector3& at) { return std::abs(at.x) > 0.4999 * kSize; });
     scene.m_cloths.push_back(cloth);
     const double seconds = scene.m_seconds;
-    scene.m_heldAt = [seconds](std::size_t, const Vector3& start, double time)
+    scene.m_heldAt = [seconds, turns](std::size_t, const Vector3& start, double time)
     {
         const double share = std::min(1.0, time / seconds), side = start.x > 0 ? 1 : -1;
-        const double angle = side * 2 * kPi * kTurns * share, x = start.x * (1 - (1 - kNearer) * share);
+        const double angle = side * 2 * kPi * turns * share, x = start.x * (1 - (1 - kNearer) * share);
         return Vector3{x, std::sin(angle) * start.z, std::cos(angle) * start.z};
     };
 }
@@ -101,12 +102,12 @@ void twist(const ClothSceneSize& size, ClothScene& scene)
 // A sheet over a funnel, and a ball that pushes it through.
 void funnel(const ClothSceneSize& size, ClothScene& scene)
 {
-    scene.m_thickness = 0.008;
+    scene.m_thickness = 0.005;
     scene.m_seconds = 4;
     const int nodes = 24 * size.m_detail + 1;
     scene.m_cloths.push_back(flatCloth(nodes, nodes, 1.1));
     shift(scene.m_cloths.back(), {0, 0.02, 0});
-    const LatheProfile wall = {{0.14, -0.6}, {0.18, -0.6}, {0.18, -0.32}, {0.62, -0.02}, {0.60, 0.0}, {0.14, -0.3}};
+    const LatheProfile wall = {{0.2, -0.6}, {0.24, -0.6}, {0.24, -0.32}, {0.62, -0.02}, {0.60, 0.0}, {0.2, -0.3}};
     scene.m_obstacles.push_back({makeRing(wall, 48), nullptr});
     scene.m_obstacles.push_back({makeSphere(0.09f, 3), [](double time) {
                                      return ScenePose{{0, 0.25 - 1.1 * smoothStep(time, 0.5, 3.5), 0}, {0, 1, 0}, 0};

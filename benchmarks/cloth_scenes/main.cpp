@@ -92,7 +92,7 @@ Row measure(const SceneOptions& options, const ClothScene& scene, int seed)
     std::vector<double> stepMs;
     SceneCheck::Pairs most, last = check.count(world);
     const SceneCheck::Pairs start = last;
-    std::size_t shortened = 0, meeting = 0, contacts = 0, bad = 0;
+    std::size_t shortened = 0, meeting = 0, contacts = 0, bad = 0, skipped = 0;
     std::uint32_t status = 0;
     double stretched = 0;
     std::uint64_t hash = kEmptyHash;
@@ -103,6 +103,7 @@ Row measure(const SceneOptions& options, const ClothScene& scene, int seed)
         shortened += statistics.m_nodesShortened;
         meeting = std::max(meeting, statistics.m_clothPairsMeeting);
         contacts = std::max(contacts, statistics.m_selfContacts);
+        skipped += statistics.m_clothPairsSkipped;
         status |= statistics.m_status;
         stretched = std::max(stretched, world.stretch().m_most);
         const std::vector<float>& positions = world.positions();
@@ -130,6 +131,7 @@ Row measure(const SceneOptions& options, const ClothScene& scene, int seed)
     row["bad_steps"] = bad;
     row["self_contacts_max"] = contacts;
     row["nodes_shortened"] = double(shortened) / double(steps);
+    row["patch_pairs_skipped"] = double(skipped) / double(steps);
     row["meeting_max"] = meeting;
     row["status"] = status;
     row["stretch_mean_end"] = world.stretch().m_mean;

@@ -104,6 +104,7 @@ static void pairTriangle(SimdGroup* group, const SelfCloths* cloths, OwnCorners*
 static int pairPatches(SimdGroup* group, const SelfCloths* cloths, OwnCorners* corners, const uint own,
                        const uint other, const TestList* list)
 {
+    if (liesSmoothly(&cloths->m_patches.m_smooth, own, other)) return 1;
     const FeatureBox box = childBox(cloths->m_patches.m_wideNodes, other);
     const BoxLanes faces = loadBoxes(cloths->m_patches.m_faceBoxes + own * DRAPE_BOX_FLOATS * DRAPE_PATCH_WIDTH);
     const LaneMask near = boxesOverlap(&faces, &box);
@@ -152,9 +153,9 @@ static void cullSelf(const ClothView* cloth, const SelfRadii* radii, const SelfP
     const uint mesh = patches->m_patches[own].m_mesh;
     const float radius = radii->m_radius[mesh];
     if (radius < 0.0f) return;
-    const SelfCloths cloths = {
-        {cloth->m_triangles, cloth->m_edges, volumeStart(cloth), cloth->m_end, radius, radii->m_thickness[mesh]},
-        *patches};
+    const SelfCloths cloths = {{cloth->m_triangles, cloth->m_edges, volumeStart(cloth), cloth->m_end, radius,
+                                radii->m_thickness[mesh], patches->m_rest, patches->m_reachScale},
+                               *patches};
     SimdGroup group;
     simdStart(&group);
     walkSelf(&group, &cloths, own, list);

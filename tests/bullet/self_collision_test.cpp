@@ -211,6 +211,30 @@ TEST(SelfCollision, ASheetSlidesOverAnotherAtTheSpeedThatFrictionLeaves)
     }
 }
 
+// Cloth in many folds has no room for more: with all of it at once such cloth flew apart.
+TEST(SelfCollision, SheetsThatStartTooCloseRecoverSlowly)
+{
+    const double thickness = 2 * double(kMargin);
+    Layers layers(hostSettings(), 2, btScalar(0.5 * thickness));
+    layers.turnGravityOff();
+    const auto distance = [&]
+    {
+        const std::vector<float> low = positionsOf(*layers.m_cloths[0]), high = positionsOf(*layers.m_cloths[1]);
+        double sum = 0;
+        for (std::size_t i = 1; i < low.size(); i += 3)
+            sum += 3 * (double(high[i]) - double(low[i])) / double(low.size());
+        return sum;
+    };
+    const double start = distance();
+    layers.m_world.step();
+    EXPECT_NEAR(distance(), start + 0.1 * thickness, 0.03 * thickness);
+    layers.m_world.step(20);
+    EXPECT_NEAR(distance(), thickness, 0.1 * thickness);
+    // A tenth of the speed of the recovery.
+    for (const btSoftBody* cloth : layers.m_cloths)
+        EXPECT_LT(rmsSpeed(*cloth), 0.01 * thickness / double(kDt));
+}
+
 namespace
 {
 // Two sheets of which one leans through the other. Returns the steps after which nothing intersects, or the number of

@@ -33,7 +33,8 @@ struct Sheets
         const std::vector<SetMember> members(
             std::size_t(count), {sheet.m_triangles.data(), sheet.triangleCount(), nullptr, 0, sheet.m_positions.data(),
                                  sheet.vertexCount()});
-        m_set.assign(members, kThickness);
+        ThreadTeam threads(1);
+        m_set.assign(members, kThickness, threads);
         m_held.assign(m_set.nodeCount(), 0);
         m_now = m_joined.m_positions;
     }

@@ -12,11 +12,20 @@ namespace drape
 namespace
 {
 // Greatest way in a step of a node whose triangles intersect others, as a share of the thickness.
-constexpr float kPushedShare = 0.1f;
+constexpr float kPushedShare = 0.2f;
 
 std::uint64_t mix(std::uint64_t hash, std::uint64_t value)
 {
     return (hash ^ value) * 0x100000001b3ull;
+}
+
+// Gives a node at least the speed at which it was pushed, along the push, so that its neighbours follow. push: m.
+void follow(const btSoftBody& body, btSoftBody::Node& node, const double push[3])
+{
+    const btVector3 way = btVector3(btScalar(push[0]), btScalar(push[1]), btScalar(push[2]));
+    const btScalar length = way.length();
+    const btScalar lacking = length * body.m_sst.isdt - node.m_v.dot(way) / length;
+    if (lacking > 0) node.m_v += way * (lacking / length);
 }
 
 // Lists the body's triangles whose nodes are all its own, and the links that are solid.
@@ -65,7 +74,7 @@ void ClothMeetings::assignSet()
                            m_members[i].m_self->m_rest.data(), static_cast<std::size_t>(body.m_nodes.size())});
         most = std::max(most, m_members[i].m_thickness);
     }
-    m_set.assign(members, float(most));
+    m_set.assign(members, float(most), m_state.threads());
 }
 
 void ClothMeetings::begin(const Bodies& bodies, const std::function<bool(const btSoftBody&)>& isStepped)
@@ -147,7 +156,6 @@ void ClothMeetings::addRow(const SelfContactView& view)
     contact.m_gap0 = view.m_gap0;
     contact.m_thickness = std::min(view.m_thickness, thicknessOf(first, second));
     contact.m_friction = float(std::max(a.m_cfg.kDF, b.m_cfg.kDF));  // Bullet's between soft bodies
-    contact.m_hardness = float(std::min(a.m_cfg.kSHR, b.m_cfg.kSHR));
     m_rows.add(contact);
     m_members[first].m_hasRows = m_members[second].m_hasRows = true;
 }
@@ -169,7 +177,7 @@ void ClothMeetings::checkStarts()
 // Lists the triangles that intersect, of bodies that may meet.
 void ClothMeetings::listMeeting()
 {
-    m_set.findMeeting(m_meeting);
+    m_set.findMeeting(m_state.threads(), m_meeting);
     std::size_t kept = 0;
     for (std::size_t i = 0; i < m_meeting.size(); i += 6)
     {
@@ -229,6 +237,7 @@ ClothRows& ClothMeetings::find(const NodesOf& nodesOf)
     for (const Contact& contact : m_contacts)
         addRow(m_set.view(contact));
     m_state.m_statistics.m_selfContacts += m_contacts.size();
+    m_state.m_statistics.m_clothPairsSkipped += m_set.smoothPairs();
     return m_rows;
 }
 
@@ -285,6 +294,7 @@ const std::vector<btSoftBody*>& ClothMeetings::guard()
         if (!(share < 1) && !isPushed(index)) return;
         node.m_x = vectorOf(vec3Load(m_set.end(), std::uint32_t(index)));
         node.m_v *= btScalar(share);
+        if (isPushed(index)) follow(*member.m_body, node, m_push.displacements().data() + 3 * index);
         if (m_moved.empty() || m_moved.back() != member.m_body) m_moved.push_back(member.m_body);
     };
     forNodes(read);

@@ -14,8 +14,9 @@ namespace drape
 {
 namespace
 {
-// Passes of the guard after which cloth that it and obstacles push to and fro stands still.
-constexpr int kMostGuardRounds = 4;
+// Passes of the guard after each of which obstacles push cloth back to its distance from them. What is pushed to and
+// fro then only stops earlier on its way, and after more passes stands still.
+constexpr int kClosedGuardRounds = 2, kMostGuardRounds = 8;
 
 // Returns the number of elements that the step's memory is proportional to.
 std::size_t elementsOf(const StepStatistics& step)
@@ -175,7 +176,8 @@ void SoftBodySolver::Work::guardMeetings()
         }
         if (!isBesideMesh) return;
         if (round == kMostGuardRounds) break;
-        closeOffPath(m_step->checkOffPath());
+        const std::vector<BodyContacts*> offPath = m_step->checkOffPath();
+        if (round <= kClosedGuardRounds) closeOffPath(offPath);
     }
     m_meetings.holdStill();
     m_state.m_statistics.m_status |= kStepMotionHeldBack;

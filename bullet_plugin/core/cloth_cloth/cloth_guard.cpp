@@ -123,8 +123,21 @@ void ClothGuard::place(ClothSet& set) const
 GuardResult ClothGuard::apply(ClothSet& set, const std::vector<unsigned char>& isHeld, const IsGuarded& isGuarded,
                               std::uint64_t limit, ThreadTeam& threads)
 {
-    GuardResult result;
     m_ends.assign(set.end(), set.end() + 3 * set.nodeCount());
+    set.allowSmooth();
+    for (;;)
+    {
+        const GuardResult result = applyOnce(set, isHeld, isGuarded, limit, threads);
+        // Pairs are left out for their whole paths. Each turn lists more of them.
+        if (result.m_shortened == 0 || result.m_tooMany || set.staysSmooth(threads)) return result;
+        std::copy(m_ends.begin(), m_ends.end(), set.end());
+    }
+}
+
+GuardResult ClothGuard::applyOnce(ClothSet& set, const std::vector<unsigned char>& isHeld, const IsGuarded& isGuarded,
+                                  std::uint64_t limit, ThreadTeam& threads)
+{
+    GuardResult result;
     m_shares.assign(set.nodeCount(), 1.0);
     m_pairs.clear();
     result.m_tooMany = !set.findPairs(2 * kGuardClearance * set.thickness(), limit, threads, m_tests);

@@ -57,6 +57,8 @@ private:
         bool m_needsPlane;        // after a check
     };
 
+    GuardResult applyOnce(ClothSet& set, const std::vector<unsigned char>& isHeld, const IsGuarded& isGuarded,
+                          std::uint64_t limit, ThreadTeam& threads);
     template <class Work>
     void forPairs(ThreadTeam& threads, const Work& work);
     void dropOthers(const ClothSet& set, const IsGuarded& isGuarded);

@@ -12,6 +12,10 @@ namespace
 {
 // Distance at rest between two members, as a multiple of the thickness.
 constexpr float kApart = 4;
+// Factor on the greatest reach of contacts, for rounding.
+constexpr float kSmoothContactMargin = 1.01f;
+// Distance at rest, as a multiple of the thickness, up to which pairs of patches may be left out.
+constexpr float kSmoothReach = 2;
 
 // Appends a member's nodes at rest, moved beside those that are there.
 void appendRest(const SetMember& member, float distance, std::vector<float>& rest)
@@ -59,7 +63,7 @@ bool meetBeyond(const Triangle& first, const Triangle& second, const float* posi
 }
 }  // namespace
 
-void ClothSet::assign(const std::vector<SetMember>& members, float thickness)
+void ClothSet::assign(const std::vector<SetMember>& members, float thickness, ThreadTeam& threads)
 {
     m_thickness = thickness;
     m_firstNodes.assign(1, 0);
@@ -89,6 +93,7 @@ void ClothSet::assign(const std::vector<SetMember>& members, float thickness)
     m_scene->join(nullptr);
     m_patches.reset(new HostSelfPatches);
     m_patches->update(m_scene->m_cloths, m_scene->m_clothRest.data());
+    m_patches->findSmoothPairs(m_scene->m_cloths, m_scene->m_clothRest.data(), kSmoothReach * thickness, threads);
 }
 
 std::size_t ClothSet::memberOf(std::size_t node) const
@@ -96,7 +101,7 @@ std::size_t ClothSet::memberOf(std::size_t node) const
     return std::size_t(std::upper_bound(m_firstNodes.begin(), m_firstNodes.end(), node) - m_firstNodes.begin()) - 1;
 }
 
-SelfStep ClothSet::stepFor(float reach, float reachScale)
+SelfStep ClothSet::stepFor(float reach, float reachScale, bool forContacts)
 {
     const MeshPool& cloths = m_scene->m_cloths;
     m_reach.m_thickness.assign(1, m_thickness);
@@ -105,18 +110,30 @@ SelfStep ClothSet::stepFor(float reach, float reachScale)
     const ClothView view =
         clothView(start(), end(), cloths.triangles().data(), cloths.edges().data(), std::uint32_t(cloths.vertexCount()),
                   std::uint32_t(cloths.triangles().size()), DRAPE_CONTINUOUS, nullptr);
-    return {cloths, selfView(view, m_scene->m_clothRest.data(), reachScale), m_reach, m_noObstacles};
+    return {cloths,      selfView(view, m_scene->m_clothRest.data(), reachScale),
+            m_reach,     m_noObstacles,
+            forContacts, forContacts ? kSmoothContactMargin * DRAPE_REST_SHARE * reachScale : kGuardedShare};
 }
 
 bool ClothSet::findPairs(float reach, std::uint64_t limit, ThreadTeam& threads, std::vector<FeatureTest>& pairs)
 {
-    m_patches->cull(stepFor(reach, 1.0f), limit, threads);
+    m_patches->cull(stepFor(reach, 1.0f, false), limit, threads);
     if (!m_patches->copyTests(limit, pairs)) return false;
     const auto keyOf = [](const FeatureTest& pair)
     { return std::make_tuple(pair.m_motion, pair.m_cloth, pair.m_lane); };
     std::sort(pairs.begin(), pairs.end(),
               [&](const FeatureTest& a, const FeatureTest& b) { return keyOf(a) < keyOf(b); });
     return true;
+}
+
+bool ClothSet::staysSmooth(ThreadTeam& threads)
+{
+    return m_patches->smoothPairs().recheck(start(), end(), kGuardedShare, threads) == 0;
+}
+
+void ClothSet::allowSmooth()
+{
+    m_patches->smoothPairs().allowAll();
 }
 
 int ClothSet::nodesOf(const FeatureTest& pair, std::uint32_t nodes[4]) const
@@ -142,22 +159,25 @@ float ClothSet::restDistance(const FeatureTest& pair) const
     return restDistanceOfEdges(rest, cloths.edges()[pair.m_cloth].m_vertices, cloths.edges()[pair.m_lane].m_vertices);
 }
 
-void ClothSet::findMeeting(std::vector<std::uint32_t>& nodes) const
+void ClothSet::findMeeting(ThreadTeam& threads, std::vector<std::uint32_t>& nodes)
 {
     const std::vector<Triangle>& triangles = m_scene->m_cloths.triangles();
     nodes.clear();
     const PooledMesh& mesh = m_scene->m_cloths.mesh(0);
     const MeshProbe probe(mesh.m_topology, mesh.m_order, {start(), start() + 3 * nodeCount()});
+    SmoothPairs& smooth = m_patches->smoothPairs();
+    smooth.check(start(), start(), kGuardedShare, threads);
     std::vector<std::uint32_t> others;
     for (std::uint32_t first = 0; first < triangles.size(); ++first)
     {
         Vec3 corners[3];
         for (int k = 0; k < 3; ++k)
             corners[k] = vec3Load(start(), triangles[first].m_vertices[k]);
-        probe.listMeeting(corners, others);
+        probe.listMeeting(corners, others,
+                          [&](std::uint32_t second) { return second > first && !smooth.isSmooth(first, second); });
         for (const std::uint32_t second : others)
         {
-            if (second <= first || !meetBeyond(triangles[first], triangles[second], start())) continue;
+            if (!meetBeyond(triangles[first], triangles[second], start())) continue;
             nodes.insert(nodes.end(), triangles[first].m_vertices, triangles[first].m_vertices + 3);
             nodes.insert(nodes.end(), triangles[second].m_vertices, triangles[second].m_vertices + 3);
         }
@@ -166,7 +186,7 @@ void ClothSet::findMeeting(std::vector<std::uint32_t>& nodes) const
 
 bool ClothSet::findContacts(float reachScale, std::uint64_t limit, ThreadTeam& threads, std::vector<Contact>& contacts)
 {
-    const SelfStep step = stepFor(m_thickness * reachScale, reachScale);
+    const SelfStep step = stepFor(m_thickness * reachScale, reachScale, true);
     m_patches->cull(step, limit, threads);
     contacts.clear();
     m_patches->findContacts(step, {limit, UINT64_MAX}, threads, contacts);

@@ -26,11 +26,14 @@ struct SetMember
     std::size_t m_nodeCount;
 };
 
+// Share of their distance at rest that points keep between which no guard is needed.
+constexpr float kGuardedShare = 0.1f;
+
 class ClothSet
 {
 public:
     // Replaces the members. thickness: m, the greatest of any pair.
-    void assign(const std::vector<SetMember>& members, float thickness);
+    void assign(const std::vector<SetMember>& members, float thickness, ThreadTeam& threads);
 
     std::size_t memberCount() const { return m_firstNodes.empty() ? 0 : m_firstNodes.size() - 1; }
     std::size_t nodeCount() const { return m_firstNodes.empty() ? 0 : m_firstNodes.back(); }
@@ -45,25 +48,33 @@ public:
     const float* end() const { return m_scene->m_clothNodes.end(); }
 
     // Returns the pairs of features that share no node and whose paths come within `reach` (m) of each other, and maybe
-    // others, in a canonical order. Valid until the next call. More than `limit` give false.
+    // others, in a canonical order. Valid until the next call. More than `limit` give false. Leaves out pairs of
+    // patches that keep kGuardedShare of their distance at rest on the whole way.
     bool findPairs(float reach, std::uint64_t limit, ThreadTeam& threads, std::vector<FeatureTest>& pairs);
     // Writes the four nodes of a pair, the first feature's first. Returns how many of them are the first's.
     int nodesOf(const FeatureTest& pair, std::uint32_t nodes[4]) const;
     // Returns a pair's distance at rest, m; that of features of two members is beyond the thickness.
     float restDistance(const FeatureTest& pair) const;
 
+    // Returns whether what the last findPairs() left out keeps its distance with the ends as they are now. The next
+    // calls list what does not, until allowSmooth().
+    bool staysSmooth(ThreadTeam& threads);
+    void allowSmooth();
+
     // Lists, for all pairs of triangles that intersect where they start, the six nodes. Exact. Triangles with a common
     // vertex need another common point; those with a common edge are left out. O(n log n).
-    void findMeeting(std::vector<std::uint32_t>& nodes) const;
+    void findMeeting(ThreadTeam& threads, std::vector<std::uint32_t>& nodes);
 
     // Finds the contacts along the paths that reach to `reachScale` times the thickness, in canonical order. More than
     // `limit` pairs give false.
     bool findContacts(float reachScale, std::uint64_t limit, ThreadTeam& threads, std::vector<Contact>& contacts);
+    // Returns how many pairs of patches the last search left out.
+    std::size_t smoothPairs() const { return m_patches->counts().m_smoothPairs; }
     // Resolves a contact; nodes are counted over all members.
     SelfContactView view(const Contact& contact) const { return viewSelfContact(*m_scene, contact); }
 
 private:
-    SelfStep stepFor(float reach, float reachScale);
+    SelfStep stepFor(float reach, float reachScale, bool forContacts);
 
     std::unique_ptr<Scene> m_scene;  // with all members as its only mesh
     std::unique_ptr<HostSelfPatches> m_patches;

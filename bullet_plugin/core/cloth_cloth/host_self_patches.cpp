@@ -46,7 +46,15 @@ void HostSelfPatches::update(const MeshPool& cloths, const float* rest)
                  m_faceBoxes.data(),
                  m_vertexBoxes.data(),
                  m_edgeBoxes.data(),
-                 m_wideNodes.data()};
+                 m_wideNodes.data(),
+                 {},
+                 nullptr,
+                 1};
+}
+
+void HostSelfPatches::findSmoothPairs(const MeshPool& cloths, const float* rest, float reach, ThreadTeam& threads)
+{
+    m_smooth.assign(cloths, m_layout, rest, reach, threads);
 }
 
 bool HostSelfPatches::isWorth(const SelfStep& step) const
@@ -70,8 +78,16 @@ void HostSelfPatches::pack(const SelfStep& step, ThreadTeam& threads)
 void HostSelfPatches::cull(const SelfStep& step, std::uint64_t limit, ThreadTeam& threads)
 {
     m_counters = {};
-    m_retries = 0;
+    m_retries = m_smoothPairs = 0;
     if (m_patches.m_patchCount == 0) return;
+    m_patches.m_smooth = {};
+    m_patches.m_rest = step.m_dropsFar ? step.m_view.m_rest : nullptr;
+    m_patches.m_reachScale = step.m_view.m_reachScale;
+    if (step.m_smoothShare > 0)
+    {
+        m_smoothPairs = m_smooth.check(step.start(), step.m_view.m_cloth.m_end, step.m_smoothShare, threads);
+        m_patches.m_smooth = m_smooth.view();
+    }
     pack(step, threads);
     if (m_tests.empty()) m_tests.resize(kFirstTests);
     const auto fill = [&]
@@ -135,7 +151,11 @@ void HostSelfPatches::findContacts(const SelfStep& step, SelfStepLimits limits, 
 
 SelfCounts HostSelfPatches::counts() const
 {
-    return {m_counters.m_selfTests, m_counters.m_contactsFound, m_counters.m_selfSwept, m_counters.m_invalidNodes,
-            m_retries};
+    return {m_counters.m_selfTests,
+            m_counters.m_contactsFound,
+            m_counters.m_selfSwept,
+            m_counters.m_invalidNodes,
+            m_retries,
+            m_smoothPairs};
 }
 }  // namespace drape

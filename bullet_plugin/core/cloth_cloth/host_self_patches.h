@@ -9,6 +9,7 @@
 #include "bullet_plugin/core/narrow_phase/host_contacts.h"
 #include "bullet_plugin/core/threads/thread_team.h"
 #include "self_step.h"
+#include "smooth_pairs.h"
 
 namespace drape
 {
@@ -19,6 +20,9 @@ public:
 
     // Rebuilds all patches, as a step does after cloths were added or removed. rest: m, x y z per joined node.
     void update(const MeshPool& cloths, const float* rest);
+    // Prepares steps that leave out smooth pairs, after update(). reach: m, see SmoothPairs::assign().
+    void findSmoothPairs(const MeshPool& cloths, const float* rest, float reach, ThreadTeam& threads);
+    SmoothPairs& smoothPairs() { return m_smooth; }
     // Lists the pairs of features whose volumes overlap. Call cull(), then findContacts(), each step.
     void cull(const SelfStep& step, std::uint64_t limit, ThreadTeam& threads);
     // Tests the listed pairs, unless they exceeded their limit. Appends the contacts in canonical order, unless they
@@ -54,10 +58,12 @@ private:
     std::vector<std::uint32_t> m_faceNodes, m_edgeNodes;
     std::vector<float> m_faceBoxes, m_vertexBoxes, m_edgeBoxes, m_wideNodes;
     SelfPatches m_patches = {};  // all of that, for kernels
+    SmoothPairs m_smooth;
     std::vector<FeatureTest> m_tests;
     HostContactFinder m_contacts;
     StepCounters m_counters = {};
     std::size_t m_retries = 0;
     std::size_t m_testsBefore = 0;  // tests of the last cull
+    std::size_t m_smoothPairs = 0;  // left out by the last cull
 };
 }  // namespace drape

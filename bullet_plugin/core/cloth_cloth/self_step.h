@@ -36,6 +36,9 @@ struct SelfStep
     SelfView m_view;
     const SelfReach& m_reach;
     const std::vector<float>& m_obstacleRadius;  // m, reach of the obstacle search, which counts invalid nodes; or -1
+    // Drops pairs that surely give no contact. Not for other uses of a pair.
+    bool m_dropsFar = false;
+    float m_smoothShare = 0;  // pairs of patches that keep this share of their distance at rest are left out; 0: none
 
     // Positions where volumes over the step begin: those of the end in a discrete step.
     const float* start() const;
@@ -55,5 +58,6 @@ struct SelfCounts
     std::uint64_t m_swept = 0;         // candidates that the continuous test decided
     std::uint64_t m_invalidNodes = 0;  // invalid nodes of cloths that the obstacle search skips
     std::size_t m_retries = 0;         // for lists that were too short
+    std::size_t m_smoothPairs = 0;     // pairs of patches that were left out
 };
 }  // namespace drape

@@ -144,7 +144,8 @@ void MeshProbe::forTrianglesIn(const Box& box, const Visit& visit) const
     }
 }
 
-void MeshProbe::listMeeting(const Vec3 corners[3], std::vector<std::uint32_t>& triangles) const
+void MeshProbe::listMeeting(const Vec3 corners[3], std::vector<std::uint32_t>& triangles,
+                            const std::function<bool(std::uint32_t)>& takes) const
 {
     triangles.clear();
     Box box = {corners[0], corners[0]};
@@ -162,7 +163,7 @@ void MeshProbe::listMeeting(const Vec3 corners[3], std::vector<std::uint32_t>& t
     {
         const Vec3 other[3] = {corner(triangle, 0), corner(triangle, 1), corner(triangle, 2)};
         if (!positionIsValid(other[0]) || !positionIsValid(other[1]) || !positionIsValid(other[2])) return;
-        if (trianglePairTest(corners, other, -1.0f) == 0) return;
+        if (!takes(triangle) || trianglePairTest(corners, other, -1.0f) == 0) return;
         if (trianglesMeet(exact, exactTriangle(other))) triangles.push_back(triangle);
     };
     forTrianglesIn(box, test);

@@ -12,6 +12,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -36,7 +37,13 @@ public:
 
     // Lists the triangles that have a point in common with the given one, in ascending order; none if a corner is not
     // finite or beyond 2^30 m.
-    void listMeeting(const Vec3 corners[3], std::vector<std::uint32_t>& triangles) const;
+    void listMeeting(const Vec3 corners[3], std::vector<std::uint32_t>& triangles) const
+    {
+        listMeeting(corners, triangles, [](std::uint32_t) { return true; });
+    }
+    // Lists only triangles for which takes(triangle) is true.
+    void listMeeting(const Vec3 corners[3], std::vector<std::uint32_t>& triangles,
+                     const std::function<bool(std::uint32_t)>& takes) const;
     // Computes the mean of the points at which the given triangle's edges pass through the listed triangles, and their
     // edges through it. Returns false if there are none: all lie in one plane.
     bool middleOfMeeting(const Vec3 corners[3], const std::vector<std::uint32_t>& triangles, Vec3& middle) const;

@@ -31,6 +31,12 @@ int iterationsOf(const SolverCloth& cloth)
     return cloth.m_substeps ? cloth.m_substeps->count() : cloth.m_links->iterations();
 }
 
+// Returns the share of the step that has passed after an iteration, for what constraints ask.
+float passedAfter(const SolverCloth& cloth, int iteration)
+{
+    return cloth.m_substeps ? float(iteration + 1) / float(cloth.m_substeps->count()) : 1.0f;
+}
+
 // Returns whether the last sweep met a violation worse than `share` of the thickness.
 bool isViolated(const ContactSweep* sweep, float share)
 {
@@ -151,8 +157,7 @@ void StepSolver::restart(int iteration)
     for (ContactSweep* sweep : m_turn)
     {
         const SolverCloth& cloth = sweep->cloth();
-        const float passed = cloth.m_substeps ? float(iteration + 1) / float(cloth.m_substeps->count()) : 1.0f;
-        sweep->restart(passed, cloth.m_substeps ? actingSweepsOf(cloth.m_substeps->count()) : 0);
+        sweep->restart(passedAfter(cloth, iteration), cloth.m_substeps ? actingSweepsOf(cloth.m_substeps->count()) : 0);
         if (cloth.m_rigid) cloth.m_rigid->begin(sweep->nodes(), *cloth.m_substeps, iteration);
     }
 }
@@ -179,7 +184,7 @@ void StepSolver::sweepInTurns()
 void StepSolver::closeRows()
 {
     if (!m_rows) return;
-    m_rows->begin();
+    m_rows->begin(1);
     for (int i = 0; i < kClosingRowSweeps; ++i)
         if (m_rows->project(1, kTolerated) <= kClosingTolerance) break;
 }
@@ -206,7 +211,7 @@ void StepSolver::sweepContacts(int iteration)
     m_team.forCloths(m_turn, boundShifts);
     select(m_iterating, m_turn, [](const ContactSweep* sweep) { return hasContacts(sweep) || sweep->cloth().m_rigid; });
     restart(iteration);
-    if (m_rows) m_rows->begin();
+    if (m_rows) m_rows->begin(passedAfter(m_all.front()->cloth(), iteration));
     sweepInTurns();
     forRigid(m_iterating, [](RigidRows& rigid) { rigid.end(); });
     select(m_iterating, m_turn, isCallers);

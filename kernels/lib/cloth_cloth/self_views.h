@@ -6,6 +6,24 @@
 
 DRAPE_NAMESPACE_BEGIN
 
+// Pairs of patches that lie so smoothly that no contact is between them (core/cloth_cloth/smooth_pairs.h), on the host.
+typedef struct SmoothView
+{
+    const DRAPE_GLOBAL DRAPE_UINT*
+        m_first;  // first pair of each patch, then the number of pairs; null if none is known
+    const DRAPE_GLOBAL DRAPE_UINT* m_others;       // by pair: the patch itself or a later one, ascending
+    const DRAPE_GLOBAL unsigned char* m_isSmooth;  // by pair
+} SmoothView;
+
+// Returns whether a patch lies smoothly with itself or a later one.
+DRAPE_FUNCTION int liesSmoothly(const SmoothView* pairs, DRAPE_UINT patch, DRAPE_UINT later)
+{
+    if (!pairs->m_first) return 0;
+    for (DRAPE_UINT i = pairs->m_first[patch]; i < pairs->m_first[patch + 1]; ++i)
+        if (pairs->m_others[i] == later) return pairs->m_isSmooth[i];
+    return 0;
+}
+
 // The cloths' own patches, and their features' boxes over the step. Ids are those of the lanes' features,
 // DRAPE_NO_FEATURE where there is none.
 typedef struct SelfPatches
@@ -24,6 +42,9 @@ typedef struct SelfPatches
     DRAPE_GLOBAL float* m_vertexBoxes;  // on a GPU by node
     DRAPE_GLOBAL float* m_edgeBoxes;    // on a CPU
     DRAPE_GLOBAL float* m_wideNodes;
+    SmoothView m_smooth;
+    const DRAPE_GLOBAL float* m_rest;  // positions at rest; null: see SelfCloth
+    float m_reachScale;
 } SelfPatches;
 
 // Lengths per cloth, m: half the reach (negative: no self collision in the step), the thickness, the reach of the

@@ -57,7 +57,7 @@ void ClothRows::add(const ClothContact& contact)
     Row row = {};
     row.m_contact = contact;
     const float gap = contact.m_gap0 - contact.m_thickness;
-    row.m_distance = contact.m_thickness + targetGap(gap, contact.m_hardness, contact.m_thickness);
+    row.m_distance = contact.m_thickness + targetGap(gap, 0.0f, contact.m_thickness);
     row.m_row.m_normal = contact.m_normal;
     row.m_row.m_friction = contact.m_friction;
     row.m_row.m_mended = 1.0f;
@@ -65,7 +65,7 @@ void ClothRows::add(const ClothContact& contact)
 }
 
 // Takes the row's plane between the nearest points of the features as they are.
-void ClothRows::takePlane(Row& row)
+void ClothRows::takePlane(Row& row, float passed)
 {
     const ClothContact& contact = row.m_contact;
     Vec3 positions[4], offset = vec3(0.0f, 0.0f, 0.0f), apart = offset;
@@ -88,8 +88,9 @@ void ClothRows::takePlane(Row& row)
         const bool hasPassed = inside && vec3Dot(apart, row.m_row.m_normal) < 0.0f;
         row.m_row.m_normal = vec3Scale(apart, (hasPassed ? -1.0f : 1.0f) / distance);
     }
+    const float distance0 = std::min(contact.m_gap0, row.m_distance);
     row.m_row.m_inverseMobility = mobility > 0.0f ? 1.0f / mobility : 0.0f;
-    row.m_row.m_level = row.m_distance - vec3Dot(row.m_row.m_normal, offset);
+    row.m_row.m_level = distance0 + passed * (row.m_distance - distance0) - vec3Dot(row.m_row.m_normal, offset);
 }
 
 // Returns the row's displacement, m.
@@ -107,7 +108,7 @@ bool ClothRows::isNear(const Row& row)
     return row.m_row.m_inverseMobility > 0.0f && violation > -kNearBy * row.m_contact.m_thickness;
 }
 
-void ClothRows::begin()
+void ClothRows::begin(float passed)
 {
     m_near.clear();
     for (std::size_t i = 0; i < m_rows.size(); ++i)
@@ -115,7 +116,7 @@ void ClothRows::begin()
         Row& row = m_rows[i];
         row.m_row.m_multiplier = 0.0f;
         row.m_row.m_held = vec3(0.0f, 0.0f, 0.0f);
-        takePlane(row);
+        takePlane(row, passed);
         if (isNear(row)) m_near.push_back(std::uint32_t(i));
     }
 }

@@ -3,9 +3,10 @@
 // Input: contacts along the predicted paths, in canonical order. Rows are projected in this order, on one thread, in
 // turns with the sweeps over links and obstacles' contacts (kernels/lib/solver/contact_row.h). A row's plane follows
 // the features: it is taken where they are nearest when a substep's sweeps begin, on the side from which they came.
-// Rows of features that are far apart then take no part until the next begin().
-// Every push is given to one feature and taken from the other, so momentum is kept. Friction is Coulomb's. Cost: some
-// 100 ns per row and sweep. Lengths in metres, world frame.
+// Rows of features that are far apart then take no part until the next begin(). A step recovers a tenth of the
+// thickness of what was missing at its start, evenly, so that its end can take back the speed. Cloth in many folds has
+// no room for more, and would fly apart. Every push is given to one feature and taken from the other, so momentum is
+// kept. Friction is Coulomb's. Cost: some 100 ns per row and sweep. Lengths in metres, world frame.
 #pragma once
 
 #include <cstddef>
@@ -28,7 +29,6 @@ struct ClothContact
     float m_gap0;       // m, along the normal at the step's start
     float m_thickness;  // m, of the pair
     float m_friction;   // coefficient
-    float m_hardness;   // see targetGap()
 };
 
 class ClothRows
@@ -37,8 +37,9 @@ public:
     void clear() { m_rows.clear(), m_near.clear(); }
     bool empty() const { return m_rows.empty(); }
     void add(const ClothContact& contact);
-    // Begins a phase, with no pushes: takes the planes where the nodes are now.
-    void begin();
+    // Begins a phase, with no pushes: takes the planes where the nodes are now. passed: share of the step that has
+    // passed at the phase's end.
+    void begin(float passed);
     // Projects the rows that take part once. relaxation: share of a violation that is corrected. tolerated: share of
     // the thickness that may remain of it. Returns the worst violation met, as a share of the thickness.
     float project(float relaxation, float tolerated);
@@ -60,7 +61,7 @@ private:
     static Vec3 startOf(const ClothContact& contact, int k);
     static Vec3 displacementOf(const ClothContact& contact, int k);
     static float inverseMassOf(const ClothContact& contact, int k);
-    static void takePlane(Row& row);
+    static void takePlane(Row& row, float passed);
     static void push(Row& row, Vec3 by);
 
     std::vector<Row> m_rows;
