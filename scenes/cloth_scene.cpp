@@ -83,7 +83,8 @@ SceneObstacle table(double size)
 void twist(const ClothSceneSize& size, ClothScene& scene)
 {
     constexpr double kSize = 1, kNearer = 0.6;
-    const double turns = 4 * std::min(1.0, size.m_detail / 3.0);  // either side's; coarse cloth cannot take more
+    const double turns =
+        4 * std::min(1.0, size.m_detail / 3.0);  // turns of either clamp; coarse cloth cannot follow more
     scene.m_thickness = 0.005;
     scene.m_seconds = 16;
     const int nodes = int(std::lround(50 * size.m_detail / 3.0));

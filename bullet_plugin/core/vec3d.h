@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstddef>
 
 #include "kernels/lib/geometry/vec3.h"
 
@@ -15,6 +16,12 @@ struct Vec3d
 inline Vec3d wide(Vec3 v)
 {
     return {double(v.x), double(v.y), double(v.z)};
+}
+
+// Returns a point of an array with x y z per point.
+inline Vec3d pointAt(const float* positions, std::size_t index)
+{
+    return {positions[3 * index], positions[3 * index + 1], positions[3 * index + 2]};
 }
 
 inline Vec3 narrow(Vec3d v)

@@ -211,7 +211,7 @@ TEST(SelfCollision, ASheetSlidesOverAnotherAtTheSpeedThatFrictionLeaves)
     }
 }
 
-// Cloth in many folds has no room for more: with all of it at once such cloth flew apart.
+// Rows that recover the whole depth in one step make cloth in many folds fly apart.
 TEST(SelfCollision, SheetsThatStartTooCloseRecoverSlowly)
 {
     const double thickness = 2 * double(kMargin);

@@ -134,6 +134,31 @@ TEST(ClothGuard, AFoldedClothDoesNotCloseThroughItself)
     }
 }
 
+// A sheet that falls onto a smaller held one: its middle stops, and what was smooth on whole paths is a bell.
+TEST(ClothGuard, PairsThatShortenedPathsBendAreListed)
+{
+    ThreadTeam threads(2);
+    Sheets sheets(2, 17, 1, 0.05f);
+    SelfIntersections check(sheets.m_joined);
+    ClothGuard guard;
+    const std::size_t nodes = sheets.m_set.firstNode(1);
+    std::fill(sheets.m_held.begin(), sheets.m_held.begin() + std::ptrdiff_t(nodes), 1);
+    for (std::size_t i = 0; i < 3 * nodes; i += 3)
+    {
+        sheets.m_now[i] *= 0.3f;
+        sheets.m_now[i + 2] *= 0.3f;
+    }
+    std::vector<float> ends = sheets.m_now;
+    for (std::size_t i = 3 * nodes + 1; i < ends.size(); i += 3)
+        ends[i] -= 1.0f;
+    const GuardResult result = sheets.moveTo(ends, guard, threads);
+    EXPECT_GT(result.m_shortened, 0u);
+    EXPECT_LT(result.m_shortened, nodes);
+    EXPECT_TRUE(sheets.m_set.staysSmooth(threads));
+    EXPECT_GT(sheets.m_set.smoothPairs(), 0u);
+    EXPECT_EQ(sheets.meetingAt(check, 1), 0u);
+}
+
 TEST(ClothGuard, AHeldSheetPushesTheOtherAside)
 {
     ThreadTeam threads(2);

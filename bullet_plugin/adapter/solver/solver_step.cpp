@@ -14,8 +14,9 @@ namespace drape
 {
 namespace
 {
-// Passes of the guard after each of which obstacles push cloth back to its distance from them. What is pushed to and
-// fro then only stops earlier on its way, and after more passes stands still.
+// Passes of the guard after which obstacles push cloth back to its distance from them, and the maximum of all passes.
+// In between, nodes that guard and obstacles push to and fro only stop earlier on their way. After the last pass all
+// cloths of the step stand still.
 constexpr int kClosedGuardRounds = 2, kMostGuardRounds = 8;
 
 // Returns the number of elements that the step's memory is proportional to.

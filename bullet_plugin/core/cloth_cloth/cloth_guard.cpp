@@ -12,11 +12,6 @@ constexpr int kMostRounds = 8;
 // Minimum pairs for sharing them among threads, and the pairs of a range.
 constexpr std::size_t kLeastShared = 1024, kRange = 256;
 
-Vec3d pointAt(const float* positions, std::size_t node)
-{
-    return {positions[3 * node], positions[3 * node + 1], positions[3 * node + 2]};
-}
-
 // Returns the distance that each side keeps, m. Features that are nearer than the thickness at rest keep less.
 double clearanceOf(const ClothSet& set, const FeatureTest& test, const FeaturePaths& paths)
 {
@@ -128,7 +123,7 @@ GuardResult ClothGuard::apply(ClothSet& set, const std::vector<unsigned char>& i
     for (;;)
     {
         const GuardResult result = applyOnce(set, isHeld, isGuarded, limit, threads);
-        // Pairs are left out for their whole paths. Each turn lists more of them.
+        // Shortened paths may need pairs that findPairs() left out. Each turn lists more of them.
         if (result.m_shortened == 0 || result.m_tooMany || set.staysSmooth(threads)) return result;
         std::copy(m_ends.begin(), m_ends.end(), set.end());
     }

@@ -12,7 +12,7 @@ namespace
 {
 // Distance at rest between two members, as a multiple of the thickness.
 constexpr float kApart = 4;
-// Factor on the greatest reach of contacts, for rounding.
+// Factor on the share of the distance at rest that contacts of neighbours reach, for rounding.
 constexpr float kSmoothContactMargin = 1.01f;
 // Distance at rest, as a multiple of the thickness, up to which pairs of patches may be left out.
 constexpr float kSmoothReach = 2;

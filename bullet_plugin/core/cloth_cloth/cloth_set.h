@@ -26,7 +26,7 @@ struct SetMember
     std::size_t m_nodeCount;
 };
 
-// Share of their distance at rest that points keep between which no guard is needed.
+// Share of their distance at rest that two points must keep to need no guard.
 constexpr float kGuardedShare = 0.1f;
 
 class ClothSet
@@ -56,8 +56,8 @@ public:
     // Returns a pair's distance at rest, m; that of features of two members is beyond the thickness.
     float restDistance(const FeatureTest& pair) const;
 
-    // Returns whether what the last findPairs() left out keeps its distance with the ends as they are now. The next
-    // calls list what does not, until allowSmooth().
+    // Returns whether all pairs that the last findPairs() left out keep their distance with the ends as they are now.
+    // Later calls list the pairs that do not, until allowSmooth().
     bool staysSmooth(ThreadTeam& threads);
     void allowSmooth();
 

@@ -11,17 +11,18 @@ namespace drape
 {
 namespace
 {
-// Most pairs of a patch, and most nodes of a cover, that are kept.
+// Maximum numbers of pairs of a patch and of nodes of a cover. Others are tested in every step.
 constexpr std::size_t kMostPairs = 48, kMostNodes = 255;
 // Greatest ratio of a way in a cover at rest to that in its plane: the cover is nearly flat.
 constexpr double kMostSlope = 1.3;
 // Least height of a triangle of a cover, as a share of the cover's size: rounding then matters little.
 constexpr double kLeastHeight = 1.0 / 500;
-// Depth to which a border may reach into the hull of a cover, as a share of its size. Ways lead around it.
+// Maximum depth to which a border reaches into the hull of a cover, as a share of the cover's size. A way around the
+// border is longer by a factor of less than 1 + 1e-4.
 constexpr double kIntrusion = 1e-5;
-// Covers rounding and such ways.
+// Factor on the demanded distance, for rounding and for ways around a border.
 constexpr float kMargin = 1.02f;
-// Patches or pairs of a range that a thread takes, and the minimum of pairs for waking threads.
+// Patches and pairs that a thread takes at a time, and the minimum number of pairs for waking threads.
 constexpr std::size_t kPatchRange = 64, kPairRange = 64, kLeastPairs = 256;
 constexpr std::uint32_t kNone = 0xffffffffu, kMany = 0xfffffffeu;
 
@@ -72,11 +73,6 @@ bool reachesInto(const std::vector<Place>& hull, Place a, Place b, double depth)
     }
     return true;
 }
-
-Vec3d nodeAt(const float* positions, std::size_t node)
-{
-    return {positions[3 * node], positions[3 * node + 1], positions[3 * node + 2]};
-}
 }  // namespace
 
 // Input of all builders.
@@ -85,8 +81,9 @@ struct SmoothPairs::Mesh
     const MeshPool& m_cloths;
     const Patches& m_patches;
     const float* m_rest;
-    std::vector<std::array<std::uint32_t, 2>> m_besides;   // by edge: its triangles, kNone; first kMany if more
-    std::vector<std::vector<std::uint32_t>> m_neighbours;  // by patch: those with a common node, ascending
+    std::vector<std::array<std::uint32_t, 2>>
+        m_besides;  // by edge: its triangles, or kNone; kMany first if it has more
+    std::vector<std::vector<std::uint32_t>> m_neighbours;  // by patch: patches with a common node, ascending
     std::vector<std::array<Vec3d, 2>> m_boxes;             // by patch: least and greatest corner
 };
 
@@ -97,7 +94,7 @@ struct SmoothPairs::Builder
 
     void addPatch(std::uint32_t patch, float reach);
 
-    SmoothPairs m_pairs;  // pairs of its patches; m_first has the number of pairs of each
+    SmoothPairs m_pairs;  // pairs of the builder's patches; m_first has the number of pairs of each
     const Mesh& m_mesh;
     std::vector<std::uint32_t> m_near;  // patches that are considered with a patch
     std::vector<std::uint32_t> m_triangles;
@@ -153,8 +150,8 @@ bool SmoothPairs::Builder::takePlane(std::uint32_t first, std::uint32_t second)
     const auto add = [&](std::uint32_t triangle)
     {
         const std::uint32_t* const v = m_mesh.m_cloths.triangles()[triangle].m_vertices;
-        const Vec3d a = nodeAt(m_mesh.m_rest, v[0]);
-        sum = sum + cross(nodeAt(m_mesh.m_rest, v[1]) - a, nodeAt(m_mesh.m_rest, v[2]) - a);
+        const Vec3d a = pointAt(m_mesh.m_rest, v[0]);
+        sum = sum + cross(pointAt(m_mesh.m_rest, v[1]) - a, pointAt(m_mesh.m_rest, v[2]) - a);
     };
     forTriangles(first, add);
     forTriangles(second, add);
@@ -167,7 +164,7 @@ bool SmoothPairs::Builder::takePlane(std::uint32_t first, std::uint32_t second)
 
 Place SmoothPairs::Builder::placeOf(std::uint32_t node) const
 {
-    const Vec3d offset = nodeAt(m_mesh.m_rest, node) - m_origin;
+    const Vec3d offset = pointAt(m_mesh.m_rest, node) - m_origin;
     return {dot(offset, m_axes[0]), dot(offset, m_axes[1])};
 }
 
@@ -185,7 +182,7 @@ std::size_t SmoothPairs::Builder::indexOf(std::uint32_t node)
 bool SmoothPairs::Builder::takeTriangle(std::uint32_t triangle, double size, double* slope)
 {
     const std::uint32_t* const v = m_mesh.m_cloths.triangles()[triangle].m_vertices;
-    const Vec3d a = nodeAt(m_mesh.m_rest, v[0]), b = nodeAt(m_mesh.m_rest, v[1]), c = nodeAt(m_mesh.m_rest, v[2]);
+    const Vec3d a = pointAt(m_mesh.m_rest, v[0]), b = pointAt(m_mesh.m_rest, v[1]), c = pointAt(m_mesh.m_rest, v[2]);
     const Vec3d normal = cross(b - a, c - a);
     const double area = std::sqrt(dot(normal, normal)), flat = dot(normal, m_normal);
     const double longest2 = std::max(dot(b - a, b - a), std::max(dot(c - b, c - b), dot(a - c, a - c)));
@@ -289,7 +286,7 @@ SmoothPairs::Mesh SmoothPairs::readMesh(const MeshPool& cloths, const Patches& p
             }
             for (const std::uint32_t node : cloths.triangles()[triangle].m_vertices)
             {
-                const Vec3d p = nodeAt(rest, node);
+                const Vec3d p = pointAt(rest, node);
                 box[0] = {std::min(box[0].x, p.x), std::min(box[0].y, p.y), std::min(box[0].z, p.z)};
                 box[1] = {std::max(box[1].x, p.x), std::max(box[1].y, p.y), std::max(box[1].z, p.z)};
                 std::vector<std::uint32_t>& all = patchesOfNode[node];
@@ -358,14 +355,28 @@ struct Seen
     float m_x[kMostNodes], m_y[kMostNodes];
 };
 
-// Computes orthonormal axes along which a cover lies. sums: of the nodes' offsets, weighted by their places.
+// Two sides of a triangle in a cover's plane, m, from its first corner.
+struct Sides
+{
+    Sides(const float* places, const unsigned char* corners)
+        : ux(places[2 * corners[1]] - places[2 * corners[0]]),
+          uy(places[2 * corners[1] + 1] - places[2 * corners[0] + 1]),
+          vx(places[2 * corners[2]] - places[2 * corners[0]]),
+          vy(places[2 * corners[2] + 1] - places[2 * corners[0] + 1])
+    {
+    }
+    float ux, uy, vx, vy;
+};
+
+// Computes two orthonormal axes along which a cover lies. x, y: its gradients along the axes of its plane, of any
+// length. Returns false if there are no such axes.
 bool takeAxes(Vec3 x, Vec3 y, Vec3 axes[2])
 {
     const float lengthX = vec3Length(x), lengthY = vec3Length(y);
     if (!(lengthX > 0.0f) || !(lengthY > 0.0f)) return false;
     x = vec3Scale(x, 1.0f / lengthX);
     y = vec3Scale(y, 1.0f / lengthY);
-    // Both are turned by the same angle until they are at a right one.
+    // Turns both directions by the same angle until they are perpendicular.
     const Vec3 sum = vec3Add(x, y), difference = vec3Sub(x, y);
     const float lengthSum = vec3Length(sum), lengthDifference = vec3Length(difference);
     if (!(lengthSum > 0.0f) || !(lengthDifference > 0.0f)) return false;
@@ -393,14 +404,13 @@ bool SmoothPairs::isSmoothNow(const Cover& cover, const float* start, const floa
     for (std::uint32_t t = 0; t < cover.m_triangleCount; ++t)
     {
         const unsigned char* const c = corners + 3 * t;
-        const float ux = places[2 * c[1]] - places[2 * c[0]], uy = places[2 * c[1] + 1] - places[2 * c[0] + 1];
-        const float vx = places[2 * c[2]] - places[2 * c[0]], vy = places[2 * c[2] + 1] - places[2 * c[0] + 1];
+        const Sides at(places, c);
         const Vec3 p =
             vec3Add(vec3Sub(offsets[0][c[1]], offsets[0][c[0]]), vec3Sub(offsets[1][c[1]], offsets[1][c[0]]));
         const Vec3 q =
             vec3Add(vec3Sub(offsets[0][c[2]], offsets[0][c[0]]), vec3Sub(offsets[1][c[2]], offsets[1][c[0]]));
-        x = vec3Add(x, vec3Sub(vec3Scale(p, vy), vec3Scale(q, uy)));
-        y = vec3Add(y, vec3Sub(vec3Scale(q, ux), vec3Scale(p, vx)));
+        x = vec3Add(x, vec3Sub(vec3Scale(p, at.vy), vec3Scale(q, at.uy)));
+        y = vec3Add(y, vec3Sub(vec3Scale(q, at.ux), vec3Scale(p, at.vx)));
     }
     if (!takeAxes(x, y, axes)) return false;
     const float least = share * cover.m_slope * kMargin;
@@ -416,14 +426,13 @@ bool SmoothPairs::isSmoothNow(const Cover& cover, const float* start, const floa
         for (std::uint32_t t = 0; t < cover.m_triangleCount; ++t)
         {
             const unsigned char* const c = corners + 3 * t;
-            const float ux = places[2 * c[1]] - places[2 * c[0]], uy = places[2 * c[1] + 1] - places[2 * c[0] + 1];
-            const float vx = places[2 * c[2]] - places[2 * c[0]], vy = places[2 * c[2] + 1] - places[2 * c[0] + 1];
+            const Sides at(places, c);
             const float px = seen.m_x[c[1]] - seen.m_x[c[0]], py = seen.m_y[c[1]] - seen.m_y[c[0]];
             const float qx = seen.m_x[c[2]] - seen.m_x[c[0]], qy = seen.m_y[c[2]] - seen.m_y[c[0]];
-            const float asked = least * (ux * vy - uy * vx);
+            const float asked = least * (at.ux * at.vy - at.uy * at.vx);
             // The gradient along the axes, times the triangle's area; its symmetric part must exceed `asked`.
-            const float a = px * vy - qx * uy - asked, b = qy * ux - py * vx - asked;
-            const float c2 = (qx * ux - px * vx) + (py * vy - qy * uy);
+            const float a = px * at.vy - qx * at.uy - asked, b = qy * at.ux - py * at.vx - asked;
+            const float c2 = (qx * at.ux - px * at.vx) + (py * at.vy - qy * at.uy);
             all &= (a > 0.0f) & (b > 0.0f) & (4.0f * a * b > c2 * c2);
         }
     }

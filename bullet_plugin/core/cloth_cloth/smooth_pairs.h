@@ -29,12 +29,12 @@ namespace drape
 class SmoothPairs
 {
 public:
-    // Replaces the patches. Pairs of those are considered that share a node, or are within `reach` of each other at
+    // Replaces the patches, and makes the covers of pairs that share a node or are within `reach` of each other at
     // rest. rest: x y z per joined node.
     void assign(const MeshPool& cloths, const Patches& patches, const float* rest, float reach, ThreadTeam& threads);
 
     // Computes which pairs are smooth between two places of the nodes, and returns how many. share: of the distance at
-    // rest, above 0. Those that recheck() has barred are not.
+    // rest, above 0. Pairs that recheck() has barred count as not smooth.
     std::size_t check(const float* start, const float* end, float share, ThreadTeam& threads);
     // Bars the pairs of the last check() that are not smooth with these places. Returns how many there are.
     std::size_t recheck(const float* start, const float* end, float share, ThreadTeam& threads);

@@ -198,8 +198,8 @@ struct StepStatistics : StepCounts, StepParts
     std::size_t m_obstaclesKept = 0;
     // Nodes whose paths were shortened so that cloth does not meet itself or other cloth (Plugin::setSelfCollision()).
     std::size_t m_nodesShortened = 0;
-    // Pairs of cloth's patches of triangles that lie so smoothly that they cannot touch, so that no pair of their
-    // features was looked at.
+    // Pairs of patches of cloth (16 triangles each) that were left out of the search for contacts of cloth with cloth,
+    // since they lie too smoothly to touch.
     std::size_t m_clothPairsSkipped = 0;
     // Pairs of cloth that are not guarded, with kStepClothsMeet: triangles that intersect at the step's start, and
     // features that touch there or that pinned nodes bring together. Other pairs are guarded all the same.

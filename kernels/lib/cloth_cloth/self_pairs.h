@@ -16,7 +16,7 @@ typedef struct SelfCloth
     __global const float* m_start;
     __global const float* m_end;
     float m_radius, m_thickness;   // m
-    __global const float* m_rest;  // null: pairs are listed by their volumes alone
+    __global const float* m_rest;  // on the host; null: pairs are listed by their volumes alone
     float m_reachScale;            // contacts reach to a pair's thickness times this
 } SelfCloth;
 
@@ -63,6 +63,7 @@ static int volumesOverlap(const Vec3 from[4], const Vec3 to[4], const int split,
 }
 #endif
 
+#ifndef __OPENCL_VERSION__
 // Returns the middle of two points.
 static Vec3 middle(const Vec3 a, const Vec3 b)
 {
@@ -76,12 +77,13 @@ static Vec3 samplePoint(const Vec3* nodes, const int count, const int sample)
     return middle(nodes[sample - count], nodes[sample - count + 1 < count ? sample - count + 1 : 0]);
 }
 
-// Covers rounding in provenFar(), as a share of lengths.
+// Padding in provenFar() for rounding, as a share of lengths.
 #define DRAPE_FAR_PAD 1e-4f
 
 // Returns whether two features surely give no contact, with the thickness that their distance at rest leaves them. One
 // direction must separate them at the start and at the end, and so on the whole way, by more than their contacts reach.
-// It joins those two of some of their points that are nearest at rest. Nodes and split as in nodeVolumesOverlap().
+// The direction joins two of the features' corners and middles, the two that are nearest at rest. nodes, split: see
+// nodeVolumesOverlap(). For the host alone: devices do not ask, and the code would cost them registers.
 static int provenFar(const SelfCloth* cloth, const uint nodes[4], const Vec3 from[4], const Vec3 to[4], const int split)
 {
     Vec3 rest[4], now[4];
@@ -124,6 +126,7 @@ static int provenFar(const SelfCloth* cloth, const uint nodes[4], const Vec3 fro
     }
     return gap > length * (own * cloth->m_reachScale * (1.0f + DRAPE_FAR_PAD) + DRAPE_FAR_PAD * size);
 }
+#endif
 
 // Lists a pair of features that share no node, and whose boxes overlap, if their volumes do. kind: DRAPE_SELF_TEST_NODE
 // …; a, b: node and face, or edges.
@@ -152,7 +155,9 @@ static void keepPair(DRAPE_GROUP_MEMORY SimdGroup* group, const SelfCloth* cloth
         from[k] = vec3Load(cloth->m_start, nodes[k]);
         to[k] = vec3Load(cloth->m_end, nodes[k]);
     }
+#ifndef __OPENCL_VERSION__
     if (cloth->m_rest && provenFar(cloth, nodes, from, to, edges ? 2 : 1)) return;
+#endif
     if (!volumesOverlap(from, to, edges ? 2 : 1, cloth->m_radius)) return;
     FeatureTest test;
     test.m_cloth = a;

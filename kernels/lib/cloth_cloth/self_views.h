@@ -43,7 +43,7 @@ typedef struct SelfPatches
     DRAPE_GLOBAL float* m_edgeBoxes;    // on a CPU
     DRAPE_GLOBAL float* m_wideNodes;
     SmoothView m_smooth;
-    const DRAPE_GLOBAL float* m_rest;  // positions at rest; null: see SelfCloth
+    const DRAPE_GLOBAL float* m_rest;  // positions at rest, m; null if pairs are listed by their volumes alone
     float m_reachScale;
 } SelfPatches;
 
