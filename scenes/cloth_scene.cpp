@@ -79,23 +79,24 @@ SceneObstacle table(double size)
     return {makeBox(float(size), 0.2f, float(size)), standing({0, -0.1, 0})};
 }
 
-// A square sheet between two clamps that turn against each other, eight turns in all, and come nearer.
+// A towel between two clamps that turn against each other, eight turns in all, and come as much nearer as the rope
+// that it becomes takes of its length. A square sheet would have to stretch by 41 % at half a turn.
 void twist(const ClothSceneSize& size, ClothScene& scene)
 {
-    constexpr double kSize = 1, kNearer = 0.6;
-    const double turns =
-        4 * std::min(1.0, size.m_detail / 3.0);  // turns of either clamp; coarse cloth cannot follow more
-    scene.m_thickness = 0.005;
+    constexpr double kLength = 2;
+    // Either clamp makes as many; coarse cloth cannot follow more.
+    const double turns = 4 * std::min(1.0, size.m_detail / 3.0);
+    scene.m_thickness = 0.002;
     scene.m_seconds = 16;
-    const int nodes = int(std::lround(50 * size.m_detail / 3.0));
-    SceneCloth cloth = flatCloth(nodes, nodes, kSize);
-    hold(cloth, [](const Vector3& at) { return std::abs(at.x) > 0.4999 * kSize; });
+    const int across = 8 * size.m_detail;
+    SceneCloth cloth = flatCloth(100 * across / 24 + 1, across + 1, kLength);
+    hold(cloth, [](const Vector3& at) { return std::abs(at.x) > 0.4999 * kLength; });
     scene.m_cloths.push_back(cloth);
     const double seconds = scene.m_seconds;
     scene.m_heldAt = [seconds, turns](std::size_t, const Vector3& start, double time)
     {
         const double share = std::min(1.0, time / seconds), side = start.x > 0 ? 1 : -1;
-        const double angle = side * 2 * kPi * turns * share, x = start.x * (1 - (1 - kNearer) * share);
+        const double angle = side * 2 * kPi * turns * share, x = start.x * (1 - turns / 8 * share);
         return Vector3{x, std::sin(angle) * start.z, std::cos(angle) * start.z};
     };
 }
@@ -164,7 +165,7 @@ void roll(const ClothSceneSize& size, ClothScene& scene)
 // Two strips in a reef knot, pulled tight at their four ends.
 void knot(const ClothSceneSize& size, ClothScene& scene)
 {
-    constexpr double kEnd = 1.2, kTightened = 0.8;
+    constexpr double kEnd = 1.2, kTightened = 0.6;
     scene.m_thickness = 0.004;
     scene.m_seconds = 4;
     // One strand's half: from its end past the other's bend, down through the other loop, and out around its legs.

@@ -2,6 +2,7 @@
 // (scenes/cloth_scene.h), measures whole steps of Bullet, and checks every step exactly for triangles that intersect.
 #include <algorithm>
 #include <iostream>
+#include <memory>
 
 #include <CLI/CLI.hpp>
 #include <drape/drape.h>
@@ -17,7 +18,8 @@ namespace drape::bench
 namespace
 {
 constexpr const char* kProgram = "cloth_scenes";
-constexpr double kDt = 1.0 / 60;
+constexpr double kFrame = 1.0 / 60;  // s
+constexpr const char *kDrape = "drape", *kVertexFace = "bullet_vf_ss", *kClusters = "bullet_clusters";
 
 struct SceneOptions : CommonOptions
 {
@@ -25,7 +27,10 @@ struct SceneOptions : CommonOptions
     std::vector<int> m_seeds = {1};
     int m_checkEvery = 1;
     ClothSceneSize m_size = {3, 8};
-    double m_seconds = 0;  // run of each scene; 0: all
+    std::vector<std::string> m_methods = {kDrape};
+    int m_stepsPerFrame = 4;
+    double m_seconds = 0;         // run of each scene; 0: all
+    double m_mostSeconds = 1e12;  // limit on the time of a run
     unsigned m_threads = 0;
     SceneWorldOptions m_world;
 };
@@ -81,60 +86,93 @@ private:
     SelfIntersections m_intersections;
 };
 
-Row measure(const SceneOptions& options, const ClothScene& scene, int seed)
+// Returns the world of a scene with the named method. plugin: set for Drape's.
+std::unique_ptr<SceneWorld> makeWorld(const SceneOptions& options, const ClothScene& scene, const std::string& method,
+                                      std::unique_ptr<Plugin>& plugin)
 {
+    if (method != kDrape)
+        return std::make_unique<SceneWorld>(
+            scene, method == kVertexFace ? BulletCollision::NodesAndFaces : BulletCollision::Clusters, options.m_world);
     Settings settings = options.settings();
     settings.m_threads = options.m_threads;
-    Plugin plugin(settings);
-    SceneWorld world(scene, plugin, options.m_world);
-    SceneCheck check(world, scene);
-    const std::size_t steps = std::size_t((options.m_seconds > 0 ? options.m_seconds : scene.m_seconds) / kDt);
-    std::vector<double> stepMs;
-    SceneCheck::Pairs most, last = check.count(world);
-    const SceneCheck::Pairs start = last;
-    std::size_t shortened = 0, meeting = 0, contacts = 0, bad = 0, skipped = 0;
-    std::uint32_t status = 0;
-    double stretched = 0;
-    std::uint64_t hash = kEmptyHash;
-    for (std::size_t step = 0; step < steps; ++step)
+    plugin = std::make_unique<Plugin>(settings);
+    return std::make_unique<SceneWorld>(scene, *plugin, options.m_world);
+}
+
+// Sums and maxima of what Drape reports about the steps of a run.
+struct Reported
+{
+    std::size_t m_shortened = 0, m_meeting = 0, m_contacts = 0, m_skipped = 0;
+    std::uint32_t m_status = 0;
+
+    void add(const StepStatistics& step)
     {
-        stepMs.push_back(world.step(kDt));
-        const StepStatistics statistics = plugin.statistics();
-        shortened += statistics.m_nodesShortened;
-        meeting = std::max(meeting, statistics.m_clothPairsMeeting);
-        contacts = std::max(contacts, statistics.m_selfContacts);
-        skipped += statistics.m_clothPairsSkipped;
-        status |= statistics.m_status;
-        stretched = std::max(stretched, world.stretch().m_most);
-        const std::vector<float>& positions = world.positions();
+        m_shortened += step.m_nodesShortened;
+        m_meeting = std::max(m_meeting, step.m_clothPairsMeeting);
+        m_contacts = std::max(m_contacts, step.m_selfContacts);
+        m_skipped += step.m_clothPairsSkipped;
+        m_status |= step.m_status;
+    }
+
+    void write(std::size_t steps, Row& row) const
+    {
+        row["self_contacts_max"] = m_contacts;
+        row["nodes_shortened"] = double(m_shortened) / double(steps);
+        row["patch_pairs_skipped"] = double(m_skipped) / double(steps);
+        row["meeting_max"] = m_meeting;
+        row["status"] = m_status;
+    }
+};
+
+Row measure(const SceneOptions& options, const ClothScene& scene, int seed, const std::string& method)
+{
+    std::unique_ptr<Plugin> plugin;
+    const std::unique_ptr<SceneWorld> world = makeWorld(options, scene, method, plugin);
+    SceneCheck check(*world, scene);
+    const std::size_t most = std::size_t((options.m_seconds > 0 ? options.m_seconds : scene.m_seconds) / kFrame);
+    std::vector<double> stepMs;
+    SceneCheck::Pairs worst, last = check.count(*world);
+    const SceneCheck::Pairs start = last;
+    Reported reported;
+    std::size_t bad = 0;
+    double stretched = 0, allMs = 0;
+    std::uint64_t hash = kEmptyHash;
+    for (std::size_t step = 0; step < most && allMs < 1000 * options.m_mostSeconds; ++step)
+    {
+        stepMs.push_back(0);
+        for (int part = 0; part < options.m_stepsPerFrame; ++part)
+        {
+            stepMs.back() += world->step(kFrame / options.m_stepsPerFrame);
+            if (plugin) reported.add(plugin->statistics());
+        }
+        allMs += stepMs.back();
+        stretched = std::max(stretched, world->stretch().m_most);
+        const std::vector<float>& positions = world->positions();
         hash = hashBytes(hash, positions.data(), positions.size() * sizeof(float));
-        if (step % std::size_t(options.m_checkEvery) != 0 && step + 1 < steps) continue;
-        last = check.count(world);
+        if (step % std::size_t(options.m_checkEvery) != 0 && step + 1 < most) continue;
+        last = check.count(*world);
         bad += last.m_cloth + last.m_obstacle > 0;
-        most.m_cloth = std::max(most.m_cloth, last.m_cloth);
-        most.m_obstacle = std::max(most.m_obstacle, last.m_obstacle);
+        worst.m_cloth = std::max(worst.m_cloth, last.m_cloth);
+        worst.m_obstacle = std::max(worst.m_obstacle, last.m_obstacle);
     }
     Row row;
     row["scene"] = scene.m_name;
+    row["method"] = method;
     row["seed"] = seed;
     row["cloths"] = scene.m_cloths.size();
-    row["triangles"] = world.mesh().triangleCount();
-    row["device"] = plugin.device().m_device.m_name;
-    row["steps"] = steps;
+    row["triangles"] = world->mesh().triangleCount();
+    row["device"] = plugin ? plugin->device().m_device.m_name : "";
+    row["steps"] = stepMs.size();
     row["median_ms"] = percentile(stepMs, 0.5);
     row["p95_ms"] = percentile(stepMs, 0.95);
     row["pairs_start"] = start.m_cloth + start.m_obstacle;
-    row["self_pairs_max"] = most.m_cloth;
+    row["self_pairs_max"] = worst.m_cloth;
     row["self_pairs_end"] = last.m_cloth;
-    row["obstacle_pairs_max"] = most.m_obstacle;
+    row["obstacle_pairs_max"] = worst.m_obstacle;
     row["obstacle_pairs_end"] = last.m_obstacle;
     row["bad_steps"] = bad;
-    row["self_contacts_max"] = contacts;
-    row["nodes_shortened"] = double(shortened) / double(steps);
-    row["patch_pairs_skipped"] = double(skipped) / double(steps);
-    row["meeting_max"] = meeting;
-    row["status"] = status;
-    row["stretch_mean_end"] = world.stretch().m_mean;
+    reported.write(stepMs.size(), row);
+    row["stretch_mean_end"] = world->stretch().m_mean;
     row["stretch_max"] = stretched;
     row["hash"] = hashText(hash);
     return row;
@@ -145,12 +183,13 @@ int measureAll(const SceneOptions& options)
     Table table;
     for (const std::string& name : options.m_scenes.empty() ? clothSceneNames() : options.m_scenes)
         for (const int seed : options.m_seeds)
-        {
-            ClothScene scene;
-            makeClothScene(name, options.m_size, std::uint32_t(seed), scene);
-            table.add(measure(options, scene, seed));
-            std::cerr << kProgram << ": " << name << ", seed " << seed << std::endl;
-        }
+            for (const std::string& method : options.m_methods)
+            {
+                ClothScene scene;
+                makeClothScene(name, options.m_size, std::uint32_t(seed), scene);
+                table.add(measure(options, scene, seed, method));
+                std::cerr << kProgram << ": " << name << ", seed " << seed << ", " << method << std::endl;
+            }
     return finishTable(kProgram, table, options);
 }
 
@@ -167,8 +206,13 @@ int run(int argc, char** argv)
     app.add_option("--sheets", options.m_size.m_sheets, "number of sheets where sheets fall")
         ->check(CLI::Validator(wholeNumber(1, 100), ""));
     app.add_option("--length", options.m_seconds, "seconds of each scene that are run; 0: all");
+    app.add_option("--method", options.m_methods, "Drape, or Bullet's own collision of cloth with cloth")
+        ->check(CLI::IsMember({kDrape, kVertexFace, kClusters}));
+    app.add_option("--most-seconds", options.m_mostSeconds, "time of a run's steps after which it ends");
     app.add_option("--check-every", options.m_checkEvery, "steps from one exact check to the next")
         ->check(CLI::Validator(wholeNumber(1, 1000000), ""));
+    app.add_option("--steps-per-frame", options.m_stepsPerFrame, "steps of 1/60 s of the scene's time")
+        ->check(CLI::Validator(wholeNumber(1, 100), ""));
     app.add_option("--iterations", options.m_world.m_iterations, "piterations of the cloth")
         ->check(CLI::Validator(wholeNumber(1, 1000), ""));
     app.add_option("--threads", options.m_threads, "see cloth_drop")->check(CLI::Validator(wholeNumber(0, 64), ""));

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "oracle/self_intersections.h"
@@ -17,6 +18,22 @@ class ClothScenes : public testing::TestWithParam<std::string>
 protected:
     static constexpr int kSteps = 16, kStepsPerCheck = 4;
 };
+
+constexpr double kSceneStep = 1.0 / 240;  // s
+
+// Returns the angle by which a cloth's one end is turned against the other about x, rad, counted over all turns.
+double twistOf(const btSoftBody& body, int columns)
+{
+    double all = 0, before = 0;
+    for (int column = 0; column < columns; ++column)
+    {
+        const btVector3 across = body.m_nodes[body.m_nodes.size() - columns + column].m_x - body.m_nodes[column].m_x;
+        const double angle = std::atan2(double(across.y()), double(across.z()));
+        if (column > 0) all += std::remainder(angle - before, 2 * 3.14159265358979);
+        before = angle;
+    }
+    return std::abs(all);
+}
 }  // namespace
 
 TEST_P(ClothScenes, NoTwoTrianglesMeet)
@@ -29,7 +46,7 @@ TEST_P(ClothScenes, NoTwoTrianglesMeet)
     EXPECT_EQ(check.find(world.positions()).size(), 0u) << "at the start";
     for (int step = 1; step <= kSteps; ++step)
     {
-        world.step(double(kDt));
+        world.step(kSceneStep);
         EXPECT_EQ(plugin.statistics().m_status, 0u) << step << ": " << statusText(plugin.statistics().m_status);
         if (step % kStepsPerCheck != 0) continue;
         EXPECT_EQ(check.find(world.positions()).size(), 0u) << step;
@@ -54,6 +71,45 @@ TEST(ClothScene, HeldNodesGoWithTheScene)
     for (int step = 0; step < 10; ++step)
         world.step(double(kDt));
     EXPECT_LT(world.cloth(0).m_nodes[node].m_x.y(), height - btScalar(0.02));
+}
+
+TEST(ClothScene, SpringsKeepTheLengthsThatFlatClothHas)
+{
+    ClothScene scene;
+    ASSERT_TRUE(makeClothScene("roll", ClothSceneSize(), 1, scene));
+    Plugin plugin(hostSettings());
+    SceneWorld world(scene, plugin);
+    world.step(kSceneStep);
+    const std::vector<float>& rest = scene.m_cloths[0].m_rest.m_mesh.m_positions;
+    const btSoftBody& body = world.cloth(0);
+    for (int i = 0; i < body.m_links.size(); ++i)
+    {
+        btVector3 ends[2];
+        for (int k = 0; k < 2; ++k)
+            for (int axis = 0; axis < 3; ++axis)
+                ends[k][axis] = rest[std::size_t(3 * (body.m_links[i].m_n[k] - &body.m_nodes[0]) + axis)];
+        ASSERT_NEAR(body.m_links[i].m_rl, (ends[1] - ends[0]).length(), 1e-6) << i;
+        ASSERT_NEAR(body.m_links[i].m_c1, body.m_links[i].m_rl * body.m_links[i].m_rl, 1e-6) << i;
+    }
+}
+
+TEST(ClothScene, ATwistedTowelUntwistsWhenItIsReleased)
+{
+    ClothScene scene;
+    ASSERT_TRUE(makeClothScene("twist", ClothSceneSize(), 1, scene));
+    Plugin plugin(hostSettings());
+    SceneWorld world(scene, plugin);
+    world.world().setGravity(btVector3(0, 0, 0));
+    world.world().getWorldInfo().m_gravity.setZero();
+    const int columns = world.cloth(0).m_nodes.size() * 2 / int(scene.m_cloths[0].m_held.size());
+    while (world.time() < 4)
+        world.step(kSceneStep);
+    const double twisted = twistOf(world.cloth(0), columns);
+    EXPECT_GT(twisted, 4);
+    world.release();
+    while (world.time() < 6)
+        world.step(kSceneStep);
+    EXPECT_LT(twistOf(world.cloth(0), columns), 0.3 * twisted);
 }
 
 TEST(ClothScene, SeedsDisplaceTheStartALittle)

@@ -103,15 +103,15 @@ Settings sleepingSettings()
 }
 
 // A cloth of 2 x 2 m and 2 kg, held at its border, and a body of 5 kg.
-class Hammock : public testing::TestWithParam<Load>
+class Hammock : public testing::TestWithParam<std::pair<Load, int>>
 {
 protected:
-    static constexpr int kNodes = 33;
+    const int m_nodes = GetParam().second;  // along a side
 
     Hammock() : m_plugin(sleepingSettings()), m_world(&m_plugin)
     {
         ClothSpec spec;
-        spec.m_nodes = kNodes;
+        spec.m_nodes = m_nodes;
         spec.m_size = 2;
         spec.m_damping = btScalar(0.2);
         m_cloth = &m_world.addCloth(spec);
@@ -123,16 +123,17 @@ protected:
 
     void setMassOfBorder(btScalar mass)
     {
-        for (int i = 0; i < kNodes; ++i)
-            for (const int node : {i, kNodes * (kNodes - 1) + i, kNodes * i, kNodes * i + kNodes - 1})
+        for (int i = 0; i < m_nodes; ++i)
+            for (const int node : {i, m_nodes * (m_nodes - 1) + i, m_nodes * i, m_nodes * i + m_nodes - 1})
                 m_cloth->setMass(node, mass);
     }
 
     btCollisionShape& makeShape()
     {
-        const bool isBall = GetParam() == Load::Mesh || GetParam() == Load::Ball;
+        const Load load = GetParam().first;
+        const bool isBall = load == Load::Mesh || load == Load::Ball;
         m_mesh = isBall ? makeSphere(0.2f, 2) : makeBox(0.3f, 0.3f, 0.3f);
-        switch (GetParam())
+        switch (load)
         {
             case Load::Mesh:
                 m_gimpact = std::make_unique<GImpact>(m_mesh);
@@ -344,5 +345,8 @@ TEST(DynamicBox, RestsOnClothThatLiesOnTheFloor)
 INSTANTIATE_TEST_SUITE_P(Backends, DynamicBodies, testing::ValuesIn(allBackends()), backendName);
 
 INSTANTIATE_TEST_SUITE_P(Loads, Hammock,
-                         testing::Values(Load::Mesh, Load::Box, Load::Ball, Load::Hull, Load::Compound));
+                         testing::Values(std::pair(Load::Mesh, 33), std::pair(Load::Box, 33), std::pair(Load::Ball, 33),
+                                         std::pair(Load::Hull, 33), std::pair(Load::Compound, 33),
+                                         std::pair(Load::Mesh, 65), std::pair(Load::Box, 65),
+                                         std::pair(Load::Ball, 65)));
 }  // namespace drape::test

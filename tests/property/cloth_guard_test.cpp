@@ -178,9 +178,31 @@ TEST(ClothGuard, AHeldSheetPushesTheOtherAside)
     for (std::size_t i = 0; i < 3 * nodes; ++i)
         EXPECT_EQ(sheets.m_now[i], ends[i]);
     EXPECT_EQ(sheets.meetingAt(check, 1), 0u);
-    // It goes on through the other: the pairs are counted.
+    // It goes on beyond where the other one was, and carries it along.
     for (std::size_t i = 1; i < 3 * nodes; i += 3)
         ends[i] += 0.05f;
+    EXPECT_EQ(sheets.moveTo(ends, guard, threads).m_forced, 0u);
+    for (std::size_t i = 0; i < 3 * nodes; ++i)
+        EXPECT_EQ(sheets.m_now[i], ends[i]);
+    for (std::size_t i = 3 * nodes + 1; i < ends.size(); i += 3)
+        EXPECT_GT(sheets.m_now[i], ends[1]);
+    for (std::size_t node = nodes; node < 2 * nodes; ++node)
+        EXPECT_TRUE(guard.isCarried(node)) << node;
+    EXPECT_EQ(sheets.meetingAt(check, 0.5f), 0u);
+    EXPECT_EQ(sheets.meetingAt(check, 1), 0u);
+}
+
+TEST(ClothGuard, ASheetThatHeldOnesCloseInOnIsCounted)
+{
+    ThreadTeam threads(2);
+    Sheets sheets(3, 9, 1, 0.03f);
+    ClothGuard guard;
+    const std::size_t nodes = sheets.m_set.firstNode(1);
+    std::fill(sheets.m_held.begin(), sheets.m_held.begin() + std::ptrdiff_t(nodes), 1);
+    std::fill(sheets.m_held.begin() + std::ptrdiff_t(2 * nodes), sheets.m_held.end(), 1);
+    std::vector<float> ends = sheets.m_now;
+    for (std::size_t i = 1; i < 3 * nodes; i += 3)
+        ends[i] += 0.0605f;
     EXPECT_GT(sheets.moveTo(ends, guard, threads).m_forced, 0u);
 }
 

@@ -4,11 +4,15 @@
 #include <chrono>
 #include <cmath>
 
+#include <BulletSoftBody/btDefaultSoftBodySolver.h>
+#include <BulletSoftBody/btSoftBodyRigidBodyCollisionConfiguration.h>
+
 namespace drape
 {
 namespace
 {
-constexpr double kGravity = 9.81;  // m/s²
+constexpr double kGravity = 9.81;     // m/s²
+constexpr int kNodesPerCluster = 16;  // Bullet's demos have 10 to 30
 
 btVector3 vectorOf(const Vector3& v)
 {
@@ -27,6 +31,15 @@ btTransform poseOf(const SceneObstacle& obstacle, double time)
     return btTransform(btQuaternion(vectorOf(pose.m_axis), btScalar(pose.m_angle)), vectorOf(pose.m_shift));
 }
 
+// Updates what depends on masses and materials. btSoftBody::updateConstants() would take the springs' lengths from
+// where the nodes are.
+void updateButLengths(btSoftBody& body)
+{
+    body.updateLinkConstants();
+    body.updateArea();
+    body.m_bUpdateRtCst = false;
+}
+
 // Appends springs with their lengths at rest.
 void addSprings(btSoftBody& body, const SceneCloth& cloth, const std::vector<std::int32_t>& springs,
                 btSoftBody::Material* material)
@@ -36,26 +49,49 @@ void addSprings(btSoftBody& body, const SceneCloth& cloth, const std::vector<std
     {
         body.appendLink(springs[i], springs[i + 1], material);
         const btVector3 way = placeOf(rest, std::size_t(springs[i])) - placeOf(rest, std::size_t(springs[i + 1]));
-        body.m_links[body.m_links.size() - 1].m_rl = way.length();
+        btSoftBody::Link& link = body.m_links[body.m_links.size() - 1];
+        link.m_rl = way.length();
+        link.m_c1 = link.m_rl * link.m_rl;
     }
-    body.updateConstants();
 }
 }  // namespace
 
-SceneWorld::SceneWorld(const ClothScene& scene, Plugin& plugin, const SceneWorldOptions& options)
+SceneWorld::SceneWorld(const ClothScene& scene, std::unique_ptr<btCollisionConfiguration> configuration,
+                       std::unique_ptr<btSoftBodySolver> solver)
     : m_scene(scene),
-      m_configuration(plugin),
-      m_solver(plugin),
-      m_dispatcher(&m_configuration),
-      m_world(&m_dispatcher, &m_broadphase, &m_rigidSolver, &m_configuration, &m_solver)
+      m_configuration(std::move(configuration)),
+      m_solver(std::move(solver)),
+      m_dispatcher(m_configuration.get()),
+      m_world(&m_dispatcher, &m_broadphase, &m_rigidSolver, m_configuration.get(), m_solver.get())
 {
     const btVector3 gravity(0, btScalar(-kGravity), 0);
     m_world.setGravity(gravity);
     m_world.getWorldInfo().m_gravity = gravity;
     for (const SceneObstacle& obstacle : scene.m_obstacles)
         addObstacle(obstacle);
+}
+
+SceneWorld::SceneWorld(const ClothScene& scene, Plugin& plugin, const SceneWorldOptions& options)
+    : SceneWorld(scene, std::make_unique<CollisionConfiguration>(plugin), std::make_unique<SoftBodySolver>(plugin))
+{
     for (const SceneCloth& cloth : scene.m_cloths)
-        addCloth(cloth, plugin, options);
+        plugin.setSelfCollision(addCloth(cloth, options), true);
+}
+
+SceneWorld::SceneWorld(const ClothScene& scene, BulletCollision collision, const SceneWorldOptions& options)
+    : SceneWorld(scene, std::make_unique<btSoftBodyRigidBodyCollisionConfiguration>(),
+                 std::make_unique<btDefaultSoftBodySolver>())
+{
+    using Flags = btSoftBody::fCollision;
+    for (const SceneCloth& cloth : scene.m_cloths)
+    {
+        btSoftBody& body = addCloth(cloth, options);
+        body.setSelfCollision(true);
+        if (collision == BulletCollision::NodesAndFaces) body.m_cfg.collisions |= Flags::VF_SS;
+        if (collision != BulletCollision::Clusters) continue;
+        body.m_cfg.collisions |= Flags::CL_SS | Flags::CL_SELF;
+        body.generateClusters(std::max(2, body.m_nodes.size() / kNodesPerCluster));
+    }
 }
 
 SceneWorld::~SceneWorld()
@@ -66,7 +102,7 @@ SceneWorld::~SceneWorld()
         m_world.removeRigidBody(obstacle.m_body.get());
 }
 
-void SceneWorld::addCloth(const SceneCloth& cloth, Plugin& plugin, const SceneWorldOptions& options)
+btSoftBody& SceneWorld::addCloth(const SceneCloth& cloth, const SceneWorldOptions& options)
 {
     const std::size_t count = cloth.m_positions.size() / 3;
     std::vector<btVector3> places(count);
@@ -86,13 +122,14 @@ void SceneWorld::addCloth(const SceneCloth& cloth, Plugin& plugin, const SceneWo
     addSprings(body, cloth, cloth.m_rest.m_bendingSprings, bending);
     for (const int node : cloth.m_held)
         body.setMass(node, 0);
+    updateButLengths(body);
     body.getCollisionShape()->setMargin(btScalar(0.5 * m_scene.m_thickness));
     body.m_cfg.piterations = options.m_iterations;
     body.m_cfg.kDP = btScalar(options.m_damping);
     body.m_cfg.kDF = btScalar(options.m_friction);
     body.m_cfg.collisions = btSoftBody::fCollision::SDF_RS;
     m_world.addSoftBody(&body);
-    plugin.setSelfCollision(body, true);
+    return body;
 }
 
 void SceneWorld::addObstacle(const SceneObstacle& obstacle)
@@ -151,6 +188,8 @@ void SceneWorld::release()
     for (std::size_t i = 0; i < m_cloths.size(); ++i)
         for (const int node : m_scene.m_cloths[i].m_held)
             m_cloths[i]->setMass(node, btScalar(m_scene.m_cloths[i].m_mass / m_cloths[i]->m_nodes.size()));
+    for (const std::unique_ptr<btSoftBody>& cloth : m_cloths)
+        updateButLengths(*cloth);
 }
 
 TriangleMesh SceneWorld::mesh() const

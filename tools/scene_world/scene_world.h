@@ -1,4 +1,4 @@
-// A scene of cloth (scenes/cloth_scene.h) as a world of Bullet's.
+// A scene of cloth (scenes/cloth_scene.h) as a world of Bullet's, with Drape's collision or with Bullet's own.
 //
 // Cloth is soft bodies that collide with themselves and with each other; obstacles are kinematic triangle meshes.
 // Springs have their lengths from the cloth at rest. Held nodes have no mass.
@@ -7,7 +7,6 @@
 #include <memory>
 #include <vector>
 
-#include <BulletSoftBody/btSoftBodyRigidBodyCollisionConfiguration.h>
 #include <BulletSoftBody/btSoftRigidDynamicsWorld.h>
 #include <btBulletCollisionCommon.h>
 #include <btBulletDynamicsCommon.h>
@@ -17,9 +16,17 @@
 
 namespace drape
 {
+// Bullet's ways of keeping cloth from cloth: nodes against faces of other bodies (VF_SS), or convex clusters of nodes,
+// of the same body, too (CL_SS and CL_SELF).
+enum class BulletCollision
+{
+    NodesAndFaces,
+    Clusters
+};
+
 struct SceneWorldOptions
 {
-    int m_iterations = 5;     // piterations
+    int m_iterations = 2;     // piterations; cloth in folds needs short steps more than iterations
     double m_damping = 0.02;  // kDP
     double m_friction = 0.6;  // kDF; the obstacles' coefficient is 1
     double m_stiffness = 1;   // kLST of edges
@@ -31,6 +38,8 @@ class SceneWorld
 public:
     // The scene and the plugin must outlive the world.
     SceneWorld(const ClothScene& scene, Plugin& plugin, const SceneWorldOptions& options = {});
+    // Without Drape.
+    SceneWorld(const ClothScene& scene, BulletCollision collision, const SceneWorldOptions& options = {});
     ~SceneWorld();
 
     // Moves what the scene moves to where it is after `dt` more seconds, and runs one step. Returns its wall time, ms.
@@ -61,13 +70,15 @@ private:
         std::unique_ptr<btRigidBody> m_body;
     };
 
-    void addCloth(const SceneCloth& cloth, Plugin& plugin, const SceneWorldOptions& options);
+    SceneWorld(const ClothScene& scene, std::unique_ptr<btCollisionConfiguration> configuration,
+               std::unique_ptr<btSoftBodySolver> solver);
+    btSoftBody& addCloth(const SceneCloth& cloth, const SceneWorldOptions& options);
     void addObstacle(const SceneObstacle& obstacle);
     void moveTo(double time);
 
     const ClothScene& m_scene;
-    CollisionConfiguration m_configuration;
-    SoftBodySolver m_solver;
+    std::unique_ptr<btCollisionConfiguration> m_configuration;
+    std::unique_ptr<btSoftBodySolver> m_solver;
     btCollisionDispatcher m_dispatcher;
     btDbvtBroadphase m_broadphase;
     btSequentialImpulseConstraintSolver m_rigidSolver;

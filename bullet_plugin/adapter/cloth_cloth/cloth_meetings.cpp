@@ -19,13 +19,18 @@ std::uint64_t mix(std::uint64_t hash, std::uint64_t value)
     return (hash ^ value) * 0x100000001b3ull;
 }
 
-// Gives a node at least the speed at which it was pushed, along the push, so that its neighbours follow. push: m.
-void follow(const btSoftBody& body, btSoftBody::Node& node, const double push[3])
+btVector3 vectorOf(const double v[3])
 {
-    const btVector3 way = btVector3(btScalar(push[0]), btScalar(push[1]), btScalar(push[2]));
+    return btVector3(btScalar(v[0]), btScalar(v[1]), btScalar(v[2]));
+}
+
+// Gives a node at least the speed at which it was pushed in the step, along the push, so that its neighbours follow.
+// way: m.
+void follow(const btSoftBody& body, btSoftBody::Node& node, const btVector3& way)
+{
     const btScalar length = way.length();
     const btScalar lacking = length * body.m_sst.isdt - node.m_v.dot(way) / length;
-    if (lacking > 0) node.m_v += way * (lacking / length);
+    if (length > 0 && lacking > 0) node.m_v += way * (lacking / length);
 }
 
 // Lists the body's triangles whose nodes are all its own, and the links that are solid.
@@ -81,6 +86,8 @@ void ClothMeetings::begin(const Bodies& bodies, const std::function<bool(const b
 {
     m_members.clear();
     m_state.m_clothPairs.clear();
+    m_lastEnds.swap(m_ends);
+    m_ends.clear();
     bool anyStepped = false;
     for (int i = 0; i < bodies.size(); ++i)
     {
@@ -147,6 +154,7 @@ void ClothMeetings::addRow(const SelfContactView& view)
         const std::size_t node = std::size_t(view.m_nodes[k]);
         contact.m_cloths[k] = member.m_nodes;
         contact.m_nodes[k] = std::uint32_t(node - m_set.firstNode(k < split ? first : second));
+        contact.m_ids[k] = nodes[k];
         contact.m_resting[k] = vec3Load(m_set.start(), std::uint32_t(node));
         moves = moves || member.m_nodes;
     }
@@ -160,13 +168,31 @@ void ClothMeetings::addRow(const SelfContactView& view)
     m_members[first].m_hasRows = m_members[second].m_hasRows = true;
 }
 
+// Returns whether the step starts where the guard left the last one, but for held nodes, which the app may have moved.
+bool ClothMeetings::startsAtLastEnds() const
+{
+    if (m_lastEnds.size() != 3 * m_set.nodeCount()) return false;
+    for (std::size_t node = 0; node < m_isHeld.size(); ++node)
+        if (!m_isHeld[node] &&
+            !std::equal(m_set.start() + 3 * node, m_set.start() + 3 * node + 3, m_lastEnds.begin() + 3 * long(node)))
+            return false;
+    return true;
+}
+
+// Lets held nodes come from where they were after the last step: the app has moved them since.
+void ClothMeetings::startHeldNodes()
+{
+    for (std::size_t i = 0; i < m_lastEnds.size(); ++i)
+        if (m_isHeld[i / 3]) m_set.start()[i] = m_lastEnds[i];
+}
+
 // Looks for triangles that intersect where the step starts, unless it starts where the guard left the last one.
 void ClothMeetings::checkStarts()
 {
     m_meeting.clear();
-    const bool isKnown =
-        m_lastEnds.size() == 3 * m_set.nodeCount() && std::equal(m_lastEnds.begin(), m_lastEnds.end(), m_set.start());
-    if (!isKnown) listMeeting();
+    if (!startsAtLastEnds()) m_lastEnds.clear();
+    startHeldNodes();
+    if (m_lastEnds.empty()) listMeeting();
     m_meets.assign(m_set.nodeCount(), 0);
     for (const std::uint32_t node : m_meeting)
         m_meets[node] = 1;
@@ -228,7 +254,9 @@ ClothRows& ClothMeetings::find(const NodesOf& nodesOf)
         const btVector3& first = member.m_isStepped ? node.m_q : node.m_x;
         writePosition(member.m_nodes ? vectorOf(member.m_nodes->start(own)) : first, start);
         writePosition(member.m_nodes ? vectorOf(member.m_nodes->end(own)) : node.m_x, end);
+        m_isHeld[index] = !member.m_isStepped || !(node.m_im > 0);
     };
+    m_isHeld.resize(m_set.nodeCount());
     forNodes(write);
     checkStarts();
     if (!m_set.findContacts(1 + m_state.settings().m_activation, m_state.settings().m_candidateLimit, m_state.threads(),
@@ -236,6 +264,10 @@ ClothRows& ClothMeetings::find(const NodesOf& nodesOf)
         m_contacts.clear();
     for (const Contact& contact : m_contacts)
         addRow(m_set.view(contact));
+    std::vector<Vec3> starts(m_rows.empty() ? 0 : m_set.nodeCount());
+    for (std::size_t node = 0; node < starts.size(); ++node)
+        starts[node] = vec3Load(m_set.start(), std::uint32_t(node));
+    m_rows.arrange(starts);
     m_state.m_statistics.m_selfContacts += m_contacts.size();
     m_state.m_statistics.m_clothPairsSkipped += m_set.smoothPairs();
     return m_rows;
@@ -266,35 +298,34 @@ bool ClothMeetings::isPushed(std::size_t node) const
 const std::vector<btSoftBody*>& ClothMeetings::guard()
 {
     m_moved.clear();
-    m_isHeld.assign(m_set.nodeCount(), 0);
     const auto write = [&](const Member& member, const btSoftBody::Node& node, std::size_t index)
     {
         float *start = m_set.start() + 3 * index, *end = m_set.end() + 3 * index;
         writePosition(member.m_isStepped ? node.m_q : node.m_x, start);
         writePosition(node.m_x, end);
-        m_isHeld[index] = !member.m_isStepped || !(node.m_im > 0);
     };
     forNodes(write);
+    startHeldNodes();
     pushApart();
     const GuardResult result = m_guard.apply(
         m_set, m_isHeld, [this](const std::uint32_t* nodes) { return isGuarded(nodes); },
         m_state.settings().m_candidateLimit, m_state.threads());
-    m_lastEnds.clear();
+    m_ends.clear();
     if (m_meeting.empty() && result.m_startMeeting == 0 && result.m_forced == 0)
-        m_lastEnds.assign(m_set.end(), m_set.end() + 3 * m_set.nodeCount());
+        m_ends.assign(m_set.end(), m_set.end() + 3 * m_set.nodeCount());
     StepStatistics& statistics = m_state.m_statistics;
     statistics.m_nodesShortened += result.m_shortened;
     statistics.m_clothPairsMeeting = m_meeting.size() / 6 + result.m_startMeeting + result.m_forced;
     if (statistics.m_clothPairsMeeting > 0) statistics.m_status |= kStepClothsMeet;
     if (result.m_tooMany) statistics.m_status |= kStepMotionHeldBack;
-    if (result.m_shortened == 0 && m_push.displacements().empty()) return m_moved;
     const auto read = [&](Member& member, btSoftBody::Node& node, std::size_t index)
     {
         const double share = m_guard.shares()[index];
-        if (!(share < 1) && !isPushed(index)) return;
+        if (!(share < 1) && !isPushed(index) && !m_guard.isCarried(index)) return;
         node.m_x = vectorOf(vec3Load(m_set.end(), std::uint32_t(index)));
         node.m_v *= btScalar(share);
-        if (isPushed(index)) follow(*member.m_body, node, m_push.displacements().data() + 3 * index);
+        if (isPushed(index)) follow(*member.m_body, node, vectorOf(m_push.displacements().data() + 3 * index));
+        if (m_guard.isCarried(index)) follow(*member.m_body, node, node.m_x - node.m_q);
         if (m_moved.empty() || m_moved.back() != member.m_body) m_moved.push_back(member.m_body);
     };
     forNodes(read);
@@ -303,6 +334,7 @@ const std::vector<btSoftBody*>& ClothMeetings::guard()
 
 void ClothMeetings::holdStill()
 {
+    m_ends.clear();
     const auto hold = [](const Member& member, btSoftBody::Node& node, std::size_t)
     {
         if (!member.m_isStepped || !(node.m_im > 0)) return;

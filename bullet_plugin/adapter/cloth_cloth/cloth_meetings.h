@@ -24,7 +24,7 @@ public:
     // Returns the solver's nodes of a body that moves in the step, null for one that rests.
     using NodesOf = std::function<SolverNodes*(const btSoftBody&)>;
 
-    explicit ClothMeetings(PluginState& state) : m_state(state) {}
+    explicit ClothMeetings(PluginState& state) : m_state(state), m_rows(state.threads()) {}
 
     // Lists the bodies of the step. isStepped: whether a body moves in it.
     void begin(const Bodies& bodies, const std::function<bool(const btSoftBody&)>& isStepped);
@@ -60,6 +60,8 @@ private:
     template <class Write>
     void forNodes(const Write& write);
     void addRow(const SelfContactView& contact);
+    bool startsAtLastEnds() const;
+    void startHeldNodes();
     void checkStarts();
     void listMeeting();
     ClothPairInfo pairAt(std::size_t first) const;
@@ -76,9 +78,10 @@ private:
     ClothRows m_rows;
     ClothGuard m_guard;
     ContourPush m_push;
-    bool m_wasPushed = false;  // in this step
-    std::vector<unsigned char> m_isHeld;
-    std::vector<float> m_lastEnds;         // the set's nodes after the last step; empty if triangles may meet there
+    bool m_wasPushed = false;             // in this step
+    std::vector<unsigned char> m_isHeld;  // by node of the set: it goes where Bullet or the app puts it
+    // The set's nodes after the last step and after this one; empty if triangles may meet there.
+    std::vector<float> m_lastEnds, m_ends;
     std::vector<std::uint32_t> m_meeting;  // see ClothSet::findMeeting()
     std::vector<unsigned char> m_meets;    // by node of the set: it belongs to such a triangle
     std::vector<btSoftBody*> m_moved;      // by the last guard()

@@ -9,6 +9,8 @@ namespace drape
 namespace
 {
 constexpr int kMostRounds = 8;
+// Maximum number of times that held nodes carry others along in a step.
+constexpr int kMostCarries = 4;
 // Minimum pairs for sharing them among threads, and the pairs of a range.
 constexpr std::size_t kLeastShared = 1024, kRange = 256;
 
@@ -115,16 +117,66 @@ void ClothGuard::place(ClothSet& set) const
     }
 }
 
+// Returns whether held nodes leave their sides of a pair's resting plane.
+bool ClothGuard::isForced(const Guarded& pair)
+{
+    if (!pair.m_rests || !pair.m_plane.m_isCertified) return false;
+    for (int k = 0; k < 4; ++k)
+        if (pair.m_paths.m_isHeld[k] && !staysClear(pair.m_plane, pair.m_paths, k, pair.m_paths.m_end[k])) return true;
+    return false;
+}
+
+// Moves the plane as far as one feature's held nodes push it, and the ends of the other's free nodes with it. Returns
+// whether an end moved.
+bool ClothGuard::carry(const Guarded& pair)
+{
+    const int split = pair.m_paths.m_split;
+    double pushed[2] = {0, 0};  // m, by the held nodes of the first feature and of the second
+    for (int k = 0; k < 4; ++k)
+        if (pair.m_paths.m_isHeld[k])
+            pushed[k >= split] =
+                std::max(pushed[k >= split], lackingDistance(pair.m_plane, pair.m_paths, k, pair.m_paths.m_end[k]));
+    if ((pushed[0] > 0) == (pushed[1] > 0)) return false;
+    const bool pushesFirst = pushed[1] > 0;
+    bool moved = false;
+    for (int k = pushesFirst ? 0 : split; k < (pushesFirst ? split : 4); ++k)
+    {
+        float* const end = m_ends.data() + 3 * pair.m_nodes[k];
+        const Vec3d back = (pushesFirst ? -1 : 1) * (pushed[pushesFirst] + pair.m_clearance) * pair.m_plane.m_normal;
+        // The end has to be as far from the moved plane as this place is from the resting one.
+        const double lacking =
+            lackingDistance(pair.m_plane, pair.m_paths, k, pointAt(m_ends.data(), pair.m_nodes[k]) + back);
+        if (pair.m_paths.m_isHeld[k] || !(lacking > 0)) continue;
+        const Vec3d by = (pushesFirst ? 1 : -1) * lacking * pair.m_plane.m_normal;
+        end[0] += float(by.x);
+        end[1] += float(by.y);
+        end[2] += float(by.z);
+        m_isCarried[pair.m_nodes[k]] = 1;
+        moved = true;
+    }
+    return moved;
+}
+
+bool ClothGuard::carryForced()
+{
+    bool moved = false;
+    for (const Guarded& pair : m_pairs)
+        if (isForced(pair)) moved = carry(pair) || moved;
+    return moved;
+}
+
 GuardResult ClothGuard::apply(ClothSet& set, const std::vector<unsigned char>& isHeld, const IsGuarded& isGuarded,
                               std::uint64_t limit, ThreadTeam& threads)
 {
     m_ends.assign(set.end(), set.end() + 3 * set.nodeCount());
+    m_isCarried.assign(set.nodeCount(), 0);
     set.allowSmooth();
-    for (;;)
+    for (int carries = 0;;)
     {
         const GuardResult result = applyOnce(set, isHeld, isGuarded, limit, threads);
+        const bool carried = result.m_forced > 0 && carries++ < kMostCarries && carryForced();
         // Shortened paths may need pairs that findPairs() left out. Each turn lists more of them.
-        if (result.m_shortened == 0 || result.m_tooMany || set.staysSmooth(threads)) return result;
+        if (!carried && (result.m_shortened == 0 || result.m_tooMany || set.staysSmooth(threads))) return result;
         std::copy(m_ends.begin(), m_ends.end(), set.end());
     }
 }
@@ -160,11 +212,7 @@ GuardResult ClothGuard::applyOnce(ClothSet& set, const std::vector<unsigned char
     {
         if (!pair.m_rests) continue;
         result.m_startMeeting += !pair.m_plane.m_isCertified;
-        bool isForced = false;
-        for (int k = 0; pair.m_plane.m_isCertified && k < 4; ++k)
-            isForced = isForced ||
-                       (pair.m_paths.m_isHeld[k] && !staysClear(pair.m_plane, pair.m_paths, k, pair.m_paths.m_end[k]));
-        result.m_forced += isForced;
+        result.m_forced += isForced(pair);
     }
     return result;
 }

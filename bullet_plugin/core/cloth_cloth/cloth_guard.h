@@ -9,7 +9,9 @@
 // Method: a pair is left alone if a moving plane keeps its features apart on the way to their rounded ends. Otherwise
 // it gets a plane that rests (separating_plane.h), and a node goes the least share of its path that its resting planes
 // allow. Shorter paths change what other pairs need, so all are checked again until nothing changes. After
-// kMostRounds every pair gets a resting plane. A node that stays where it started is on its side of all of them.
+// kMostRounds every pair gets a resting plane. A node that stays where it started is on its side of all of them. Held
+// nodes stay on theirs only if they move little. Where they do not, the other feature is carried along: the ends of its
+// free nodes move with the plane, and all pairs are checked anew.
 #pragma once
 
 #include <cstddef>
@@ -45,6 +47,8 @@ public:
                       std::uint64_t limit, ThreadTeam& threads);
     // Returns the share of its path that each node went in the last apply().
     const std::vector<double>& shares() const { return m_shares; }
+    // Returns whether held nodes carried a node in the last apply(): its path is another one then.
+    bool isCarried(std::size_t node) const { return m_isCarried[node] != 0; }
 
 private:
     struct Guarded
@@ -66,10 +70,14 @@ private:
     bool checkPairs(const ClothSet& set, bool all, ThreadTeam& threads);
     bool shorten(const ClothSet& set, bool rounded);
     void place(ClothSet& set) const;
+    static bool isForced(const Guarded& pair);
+    bool carry(const Guarded& pair);
+    bool carryForced();
 
     std::vector<FeatureTest> m_tests;
     std::vector<Guarded> m_pairs;
     std::vector<double> m_shares;
     std::vector<float> m_ends;  // ends of the whole paths
+    std::vector<unsigned char> m_isCarried;
 };
 }  // namespace drape

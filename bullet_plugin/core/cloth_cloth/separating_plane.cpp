@@ -217,11 +217,16 @@ SeparatingPlane separatingPlane(const FeaturePaths& paths, double clearance)
     return plane;
 }
 
-bool staysClear(const SeparatingPlane& plane, const FeaturePaths& paths, int node, Vec3d position)
+double lackingDistance(const SeparatingPlane& plane, const FeaturePaths& paths, int node, Vec3d position)
 {
     const Height height = heightOf(plane.m_normal, plane.m_origin, position);
     const double sign = node < paths.m_split ? 1 : -1;
-    return sign * (height.m_value - plane.m_offset) - height.m_error >= plane.m_clear[node];
+    return std::max(0.0, plane.m_clear[node] - (sign * (height.m_value - plane.m_offset) - height.m_error));
+}
+
+bool staysClear(const SeparatingPlane& plane, const FeaturePaths& paths, int node, Vec3d position)
+{
+    return lackingDistance(plane, paths, node, position) == 0;
 }
 
 double clearShare(const SeparatingPlane& plane, const FeaturePaths& paths, int node)

@@ -46,6 +46,9 @@ SeparatingPlane separatingPlane(const FeaturePaths& paths, double clearance);
 // Returns whether the position is surely on the node's side of the plane, as far away as the plane demands.
 bool staysClear(const SeparatingPlane& plane, const FeaturePaths& paths, int node, Vec3d position);
 
+// Returns how far the position is from where the node stays clear of the plane, m; 0 if it does.
+double lackingDistance(const SeparatingPlane& plane, const FeaturePaths& paths, int node, Vec3d position);
+
 // Returns the share of its path, 0 to 1, up to which a node stays clear; a little less where it would not to the end.
 double clearShare(const SeparatingPlane& plane, const FeaturePaths& paths, int node);
 }  // namespace drape

@@ -175,7 +175,7 @@ void StepSolver::sweepInTurns()
         for (int k = 0; k < kRowSweeps; ++k)
         {
             forRigid(m_turn, [](RigidRows& rigid) { rigid.projectFeatures(DRAPE_TURN_RELAXATION); });
-            if (m_rows) m_rows->project(DRAPE_TURN_RELAXATION, 0);
+            if (m_rows) m_rows->project(1, DRAPE_TURN_RELAXATION);
         }
     }
 }
@@ -185,8 +185,7 @@ void StepSolver::closeRows()
 {
     if (!m_rows) return;
     m_rows->begin(1);
-    for (int i = 0; i < kClosingRowSweeps; ++i)
-        if (m_rows->project(1, kTolerated) <= kClosingTolerance) break;
+    m_rows->project(kClosingRowSweeps, 1, kTolerated, kClosingTolerance);
 }
 
 // Runs an iteration's limits and contact sweeps.
@@ -267,17 +266,18 @@ void StepSolver::holdOthers()
                      });
 }
 
-// Brings nodes to rest that hardly moved. Only for cloths that a contact pushed in this step, all of whose obstacles
-// rest, and that touch no rigid body: momentum goes to the obstacle. Closing sweeps follow, so that the contacts hold.
+// Brings nodes to rest that hardly moved. Only for cloths that a contact pushed in this step, with an obstacle or with
+// cloth, all of whose obstacles rest, and that touch no rigid body: momentum goes to the obstacle. Closing sweeps
+// follow, so that the contacts hold.
 void StepSolver::settle()
 {
-    const auto isSettled = [](const ContactSweep* sweep)
+    const auto isSettled = [this](const ContactSweep* sweep)
     {
         const SolverCloth& cloth = sweep->cloth();
         return cloth.m_substeps && cloth.m_substeps->settles() && !cloth.m_rigid && obstaclesRest(sweep) &&
-               sweep->hasPushed();
+               (sweep->hasPushed() || (cloth.m_meetsCloth && m_rows->havePushed()));
     };
-    select(m_touching, m_turn, isSettled);
+    select(m_all, m_turn, isSettled);
     const auto settleNodes = [](ContactSweep& sweep)
     {
         SolverNodes& nodes = sweep.nodes();

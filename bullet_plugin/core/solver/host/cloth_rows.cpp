@@ -1,6 +1,7 @@
 #include "cloth_rows.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include "kernels/lib/cloth_cloth/self_contact.h"
 #include "kernels/lib/solver/acting_contact.h"
@@ -14,6 +15,9 @@ constexpr float kSureDistance = 0.01f;
 
 // Distance beyond the resting one, as a share of the thickness, within which features may meet in a phase's sweeps.
 constexpr float kNearBy = 0.25f;
+
+// Minimum rows for sharing them among threads, and parts of the nodes: more than threads, so that all have work.
+constexpr std::size_t kLeastShared = 2048, kParts = 32;
 
 // Writes the weights of the nearest points of two features: positive for the first one's nodes, negative for the
 // second's. positions: m.
@@ -37,26 +41,23 @@ void nearestWeights(const Vec3 positions[4], int split, float weights[4])
 }
 }  // namespace
 
-Vec3 ClothRows::startOf(const ClothContact& contact, int k)
-{
-    return contact.m_cloths[k] ? contact.m_cloths[k]->start(contact.m_nodes[k]) : contact.m_resting[k];
-}
-
-Vec3 ClothRows::displacementOf(const ClothContact& contact, int k)
-{
-    return contact.m_cloths[k] ? contact.m_cloths[k]->displacement(contact.m_nodes[k]) : vec3(0.0f, 0.0f, 0.0f);
-}
-
-float ClothRows::inverseMassOf(const ClothContact& contact, int k)
-{
-    return contact.m_cloths[k] ? contact.m_cloths[k]->inverseMass(contact.m_nodes[k]) : 0.0f;
-}
-
 void ClothRows::add(const ClothContact& contact)
 {
     Row row = {};
-    row.m_contact = contact;
+    for (int k = 0; k < 4; ++k)
+    {
+        SolverNodes* const cloth = contact.m_cloths[k];
+        const std::uint32_t node = contact.m_nodes[k];
+        row.m_nodes[k] = cloth ? cloth->nodes() + node : &m_fixed;
+        row.m_states[k] = cloth ? cloth->states() + node : &m_fixedState;
+        row.m_starts[k] = cloth ? cloth->start(node) : contact.m_resting[k];
+        row.m_inverseMasses[k] = cloth ? cloth->inverseMass(node) : 0.0f;
+        row.m_ids[k] = contact.m_ids[k];
+    }
     const float gap = contact.m_gap0 - contact.m_thickness;
+    row.m_split = contact.m_split;
+    row.m_gap0 = contact.m_gap0;
+    row.m_thickness = contact.m_thickness;
     row.m_distance = contact.m_thickness + targetGap(gap, 0.0f, contact.m_thickness);
     row.m_row.m_normal = contact.m_normal;
     row.m_row.m_friction = contact.m_friction;
@@ -64,31 +65,69 @@ void ClothRows::add(const ClothContact& contact)
     m_rows.push_back(row);
 }
 
+ThreadTeam* ClothRows::threads() const
+{
+    return m_climb.leafCount() > 1 ? &m_threads : nullptr;
+}
+
+// Returns the group of the parts that have the row's moving nodes.
+std::uint32_t ClothRows::groupOf(const Row& row) const
+{
+    std::size_t group = 0;
+    for (int k = 0; k < 4; ++k)
+    {
+        if (!(row.m_inverseMasses[k] > 0.0f)) continue;
+        const std::size_t leaf = m_parts.leafOf(int(row.m_ids[k]));
+        group = group == 0 ? leaf : ClothParts::commonGroup(group, leaf);
+    }
+    return std::uint32_t(std::max<std::size_t>(group, 1));
+}
+
+void ClothRows::arrange(const std::vector<Vec3>& positions)
+{
+    const std::size_t parts = m_rows.size() >= kLeastShared ? kParts : 1;
+    m_parts.cut(positions, (positions.size() + parts - 1) / parts, &m_threads);
+    m_climb.resize(m_parts.leafCount());
+    m_firsts.assign(m_parts.groupCount() + 1, 0);
+    for (Row& row : m_rows)
+    {
+        row.m_group = groupOf(row);
+        ++m_firsts[row.m_group + 1];
+    }
+    std::partial_sum(m_firsts.begin(), m_firsts.end(), m_firsts.begin());
+    m_unordered.swap(m_rows);
+    m_rows.resize(m_unordered.size());
+    m_nearEnds.assign(m_firsts.begin(), m_firsts.end() - 1);
+    for (const Row& row : m_unordered)
+        m_rows[m_nearEnds[row.m_group]++] = row;
+    m_near.resize(m_rows.size());
+    m_worst.resize(m_parts.groupCount());
+}
+
 // Takes the row's plane between the nearest points of the features as they are.
 void ClothRows::takePlane(Row& row, float passed)
 {
-    const ClothContact& contact = row.m_contact;
     Vec3 positions[4], offset = vec3(0.0f, 0.0f, 0.0f), apart = offset;
     for (int k = 0; k < 4; ++k)
-        positions[k] = vec3Add(startOf(contact, k), displacementOf(contact, k));
-    nearestWeights(positions, contact.m_split, row.m_weights);
+        positions[k] = vec3Add(row.m_starts[k], row.m_nodes[k]->m_displacement);
+    nearestWeights(positions, row.m_split, row.m_weights);
     float mobility = 0.0f;
     for (int k = 0; k < 4; ++k)
     {
         // Weights add up to 0: offsets from one node have less rounding than positions.
         apart = vec3AddScaled(apart, vec3Sub(positions[k], positions[0]), row.m_weights[k]);
-        offset = vec3AddScaled(offset, vec3Sub(startOf(contact, k), startOf(contact, 0)), row.m_weights[k]);
-        mobility += row.m_weights[k] * row.m_weights[k] * inverseMassOf(contact, k);
+        offset = vec3AddScaled(offset, vec3Sub(row.m_starts[k], row.m_starts[0]), row.m_weights[k]);
+        mobility += row.m_weights[k] * row.m_weights[k] * row.m_inverseMasses[k];
     }
     const float distance = vec3Length(apart);
-    if (distance > kSureDistance * contact.m_thickness)
+    if (distance > kSureDistance * row.m_thickness)
     {
         // Features pass each other where both are nearest inside. A node beside a face went around it.
         const bool inside = std::all_of(row.m_weights, row.m_weights + 4, [](float weight) { return weight != 0.0f; });
         const bool hasPassed = inside && vec3Dot(apart, row.m_row.m_normal) < 0.0f;
         row.m_row.m_normal = vec3Scale(apart, (hasPassed ? -1.0f : 1.0f) / distance);
     }
-    const float distance0 = std::min(contact.m_gap0, row.m_distance);
+    const float distance0 = std::min(row.m_gap0, row.m_distance);
     row.m_row.m_inverseMobility = mobility > 0.0f ? 1.0f / mobility : 0.0f;
     row.m_row.m_level = distance0 + passed * (row.m_distance - distance0) - vec3Dot(row.m_row.m_normal, offset);
 }
@@ -98,71 +137,93 @@ Vec3 ClothRows::wayOf(const Row& row)
 {
     Vec3 way = vec3(0.0f, 0.0f, 0.0f);
     for (int k = 0; k < 4; ++k)
-        way = vec3AddScaled(way, displacementOf(row.m_contact, k), row.m_weights[k]);
+        way = vec3AddScaled(way, row.m_nodes[k]->m_displacement, row.m_weights[k]);
     return way;
 }
 
 bool ClothRows::isNear(const Row& row)
 {
     const float violation = row.m_row.m_level - vec3Dot(row.m_row.m_normal, wayOf(row));
-    return row.m_row.m_inverseMobility > 0.0f && violation > -kNearBy * row.m_contact.m_thickness;
+    return row.m_row.m_inverseMobility > 0.0f && violation > -kNearBy * row.m_thickness;
 }
 
 void ClothRows::begin(float passed)
 {
-    m_near.clear();
-    for (std::size_t i = 0; i < m_rows.size(); ++i)
+    const auto beginGroup = [&](std::size_t group)
     {
-        Row& row = m_rows[i];
-        row.m_row.m_multiplier = 0.0f;
-        row.m_row.m_held = vec3(0.0f, 0.0f, 0.0f);
-        takePlane(row, passed);
-        if (isNear(row)) m_near.push_back(std::uint32_t(i));
-    }
+        m_nearEnds[group] = m_firsts[group];
+        for (std::size_t i = m_firsts[group]; i < m_firsts[group + 1]; ++i)
+        {
+            Row& row = m_rows[i];
+            row.m_row.m_multiplier = 0.0f;
+            row.m_row.m_held = vec3(0.0f, 0.0f, 0.0f);
+            takePlane(row, passed);
+            if (isNear(row)) m_near[m_nearEnds[group]++] = std::uint32_t(i);
+        }
+    };
+    m_climb.run(threads(), beginGroup);
 }
 
 // Moves the row's nodes. by: kg m.
-void ClothRows::push(Row& row, Vec3 by)
+void ClothRows::shift(Row& row, Vec3 by)
 {
-    const ClothContact& contact = row.m_contact;
     for (int k = 0; k < 4; ++k)
-        if (const float inverseMass = inverseMassOf(contact, k); inverseMass > 0.0f)
-            contact.m_cloths[k]->shift(contact.m_nodes[k], vec3Scale(by, row.m_weights[k] * inverseMass));
+        if (row.m_inverseMasses[k] > 0.0f)
+            nodeShift(row.m_nodes[k], row.m_states[k], vec3Scale(by, row.m_weights[k] * row.m_inverseMasses[k]));
 }
 
-float ClothRows::project(float relaxation, float tolerated)
+void ClothRows::project(int sweeps, float relaxation, float tolerated, float enough)
 {
-    float worst = 0.0f;
-    for (const std::uint32_t index : m_near)
+    const auto projectGroup = [&](std::size_t group)
     {
-        Row& row = m_rows[index];
-        const float thickness = row.m_contact.m_thickness;
-        float violation = 0.0f;
-        Vec3 by;
-        if (pushRow(&row.m_row, wayOf(row), 1.0f, tolerated * thickness, relaxation, &violation, &by)) push(row, by);
-        worst = std::max(worst, violation / thickness);
+        float worst = 0.0f;
+        for (std::size_t i = m_firsts[group]; i < m_nearEnds[group]; ++i)
+        {
+            Row& row = m_rows[m_near[i]];
+            float violation = 0.0f;
+            Vec3 by;
+            if (pushRow(&row.m_row, wayOf(row), 1.0f, tolerated * row.m_thickness, relaxation, &violation, &by))
+                shift(row, by);
+            worst = std::max(worst, violation / row.m_thickness);
+        }
+        m_worst[group] = worst;
+    };
+    for (int i = 0; i < sweeps; ++i)
+    {
+        m_climb.run(threads(), projectGroup);
+        if (*std::max_element(m_worst.begin() + 1, m_worst.end()) <= enough) return;
     }
-    return worst;
+}
+
+bool ClothRows::havePushed() const
+{
+    return std::any_of(m_rows.begin(), m_rows.end(), [](const Row& row) { return row.m_row.m_multiplier > 0.0f; });
+}
+
+// Removes from the nodes' velocities what the row gained; see limitSpeeds().
+void ClothRows::limitSpeed(Row& row, float perSecond)
+{
+    const float recovered = row.m_distance - row.m_gap0;
+    if (!(row.m_gap0 < row.m_thickness) || !(row.m_row.m_inverseMobility > 0.0f)) return;
+    float speed = 0.0f;
+    for (int k = 0; k < 4; ++k)
+        speed += row.m_weights[k] * vec3Dot(row.m_states[k]->m_velocity, row.m_row.m_normal);
+    const float excess = std::min(speed, std::max(0.0f, recovered) * perSecond);
+    if (!(excess > 0.0f)) return;
+    const Vec3 loss = vec3Scale(row.m_row.m_normal, -excess * row.m_row.m_inverseMobility);
+    for (int k = 0; k < 4; ++k)
+        if (row.m_inverseMasses[k] > 0.0f)
+            row.m_states[k]->m_velocity =
+                vec3AddScaled(row.m_states[k]->m_velocity, loss, row.m_weights[k] * row.m_inverseMasses[k]);
 }
 
 void ClothRows::limitSpeeds(float perSecond)
 {
-    for (const Row& row : m_rows)
+    const auto limitGroup = [&](std::size_t group)
     {
-        const ClothContact& contact = row.m_contact;
-        const float recovered = row.m_distance - contact.m_gap0;
-        if (!(contact.m_gap0 < contact.m_thickness) || !(row.m_row.m_inverseMobility > 0.0f)) continue;
-        float speed = 0.0f;
-        for (int k = 0; k < 4; ++k)
-            if (contact.m_cloths[k])
-                speed +=
-                    row.m_weights[k] * vec3Dot(contact.m_cloths[k]->velocity(contact.m_nodes[k]), row.m_row.m_normal);
-        const float excess = std::min(speed, std::max(0.0f, recovered) * perSecond);
-        if (!(excess > 0.0f)) continue;
-        const Vec3 loss = vec3Scale(row.m_row.m_normal, -excess * row.m_row.m_inverseMobility);
-        for (int k = 0; k < 4; ++k)
-            if (const float inverseMass = inverseMassOf(contact, k); inverseMass > 0.0f)
-                contact.m_cloths[k]->addVelocity(contact.m_nodes[k], vec3Scale(loss, row.m_weights[k] * inverseMass));
-    }
+        for (std::size_t i = m_firsts[group]; i < m_firsts[group + 1]; ++i)
+            limitSpeed(m_rows[i], perSecond);
+    };
+    m_climb.run(threads(), limitGroup);
 }
 }  // namespace drape

@@ -1,12 +1,14 @@
 // Contacts of cloth with cloth and with itself, as rows of a step's solver: of a node and a face, or of two edges.
 //
-// Input: contacts along the predicted paths, in canonical order. Rows are projected in this order, on one thread, in
-// turns with the sweeps over links and obstacles' contacts (kernels/lib/solver/contact_row.h). A row's plane follows
+// Input: contacts along the predicted paths, in canonical order. Rows are projected in turns with the sweeps over links
+// and obstacles' contacts (kernels/lib/solver/contact_row.h). The nodes are cut into parts by where they are, all
+// cloths' together (ClothParts); rows within one part go first, side by side with those of other parts. So the result
+// is the same bits with any number of threads. A row's plane follows
 // the features: it is taken where they are nearest when a substep's sweeps begin, on the side from which they came.
 // Rows of features that are far apart then take no part until the next begin(). A step recovers a tenth of the
 // thickness of what was missing at its start, evenly, so that its end can take back the speed. Cloth in many folds has
 // no room for more, and would fly apart. Every push is given to one feature and taken from the other, so momentum is
-// kept. Friction is Coulomb's. Cost: some 100 ns per row and sweep. Lengths in metres, world frame.
+// kept. Friction is Coulomb's. Cost: some 60 ns per row and sweep. Lengths in metres, world frame.
 #pragma once
 
 #include <cstddef>
@@ -14,6 +16,9 @@
 #include <vector>
 
 #include "bullet_plugin/core/solver/solver_nodes.h"
+#include "bullet_plugin/core/solver/topology/cloth_parts.h"
+#include "bullet_plugin/core/solver/topology/group_climb.h"
+#include "bullet_plugin/core/threads/thread_team.h"
 #include "kernels/lib/solver/contact_row.h"
 
 namespace drape
@@ -23,6 +28,7 @@ struct ClothContact
 {
     SolverNodes* m_cloths[4];  // each node's; null for one that does not move in the step
     std::uint32_t m_nodes[4];  // index in its cloth
+    std::uint32_t m_ids[4];    // index among all cloths' nodes
     Vec3 m_resting[4];         // m, positions of nodes without a cloth
     int m_split;
     Vec3 m_normal;      // unit, from the second feature to the side from which the first came
@@ -34,15 +40,21 @@ struct ClothContact
 class ClothRows
 {
 public:
-    void clear() { m_rows.clear(), m_near.clear(); }
+    explicit ClothRows(ThreadTeam& threads) : m_threads(threads) {}
+
+    void clear() { m_rows.clear(); }
     bool empty() const { return m_rows.empty(); }
     void add(const ClothContact& contact);
+    // Orders the rows, after the last add(). positions: m, of all cloths' nodes.
+    void arrange(const std::vector<Vec3>& positions);
     // Begins a phase, with no pushes: takes the planes where the nodes are now. passed: share of the step that has
     // passed at the phase's end.
     void begin(float passed);
-    // Projects the rows that take part once. relaxation: share of a violation that is corrected. tolerated: share of
-    // the thickness that may remain of it. Returns the worst violation met, as a share of the thickness.
-    float project(float relaxation, float tolerated);
+    // Projects the rows that take part `sweeps` times, or until no violation exceeds `enough`. relaxation: share of a
+    // violation that is corrected. tolerated: violation that may remain. All are shares of the thickness.
+    void project(int sweeps, float relaxation, float tolerated = 0, float enough = 0);
+    // Returns whether a row has pushed since the last begin().
+    bool havePushed() const;
     // Removes from the nodes' velocities what rows gained by recovering a depth that the step began with. perSecond:
     // 1/s, steps per second.
     void limitSpeeds(float perSecond);
@@ -50,21 +62,37 @@ public:
 private:
     struct Row
     {
-        ClothContact m_contact;
-        float m_weights[4];  // by node; the second feature's are negative
-        float m_distance;    // m, least at the step's end
-        ContactRow m_row;    // its normal, level, multiplier and friction; nodes and weights are those above
+        SolverNode* m_nodes[4];  // one that does not move has no inverse mass
+        NodeState* m_states[4];
+        Vec3 m_starts[4];          // m
+        float m_inverseMasses[4];  // 1/kg
+        float m_weights[4];        // by node; the second feature's are negative
+        std::uint32_t m_ids[4];    // see ClothContact
+        std::uint32_t m_group;
+        int m_split;        // nodes of the first feature
+        float m_gap0;       // m
+        float m_distance;   // m, least at the step's end
+        float m_thickness;  // m
+        ContactRow m_row;   // its normal, level, multiplier and friction; nodes and weights are those above
     };
 
     static bool isNear(const Row& row);
     static Vec3 wayOf(const Row& row);
-    static Vec3 startOf(const ClothContact& contact, int k);
-    static Vec3 displacementOf(const ClothContact& contact, int k);
-    static float inverseMassOf(const ClothContact& contact, int k);
     static void takePlane(Row& row, float passed);
-    static void push(Row& row, Vec3 by);
+    static void shift(Row& row, Vec3 by);
+    std::uint32_t groupOf(const Row& row) const;
+    static void limitSpeed(Row& row, float perSecond);
+    ThreadTeam* threads() const;
 
-    std::vector<Row> m_rows;
-    std::vector<std::uint32_t> m_near;  // rows that take part, in order
+    ThreadTeam& m_threads;
+    SolverNode m_fixed = {};  // stands for all nodes that do not move in the step
+    NodeState m_fixedState = {};
+    ClothParts m_parts;
+    GroupClimb m_climb;
+    std::vector<Row> m_rows, m_unordered;
+    std::vector<std::size_t> m_firsts;    // by group, the first of its rows; then the end
+    std::vector<std::uint32_t> m_near;    // by group, from m_firsts on: rows that take part
+    std::vector<std::size_t> m_nearEnds;  // by group, in m_near
+    std::vector<float> m_worst;           // by group, the violation that the last sweep met
 };
 }  // namespace drape

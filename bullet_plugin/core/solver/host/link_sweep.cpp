@@ -90,11 +90,8 @@ void LinkSweep::addBlock(const LinkNodes& link)
 void LinkSweep::build(std::size_t nodeCount, std::size_t leafCount, const std::vector<LinkNodes>& links,
                       std::uint64_t partsRevision)
 {
-    m_leafCount = leafCount;
+    m_climb.resize(leafCount);
     m_partsRevision = partsRevision;
-    m_halfDone.reset(new std::atomic<bool>[2 * leafCount]);
-    for (std::size_t group = 0; group < 2 * leafCount; ++group)
-        m_halfDone[group] = false;
     std::vector<std::uint32_t> order(links.size());
     std::iota(order.begin(), order.end(), 0u);
     std::stable_sort(order.begin(), order.end(),
@@ -183,22 +180,8 @@ void LinkSweep::visitGroup(std::size_t group, SolverNode* nodes) const
     }
 }
 
-void LinkSweep::climb(std::size_t leaf, SolverNode* nodes)
-{
-    for (std::size_t group = m_leafCount + leaf;; group /= 2)
-    {
-        visitGroup(group, nodes);
-        // The second half to finish continues, and sees what the first one wrote.
-        if (group == 1 || !m_halfDone[group / 2].exchange(true, std::memory_order_acq_rel)) return;
-        m_halfDone[group / 2].store(false, std::memory_order_relaxed);
-    }
-}
-
 void LinkSweep::sweep(SolverNode* nodes, ThreadTeam* threads)
 {
-    const auto climbFrom = [&](std::size_t leaf) { climb(leaf, nodes); };
-    if (threads && linkCount() >= kLeastShared) return threads->run(m_leafCount, climbFrom);
-    for (std::size_t leaf = 0; leaf < m_leafCount; ++leaf)
-        climbFrom(leaf);
+    m_climb.run(linkCount() >= kLeastShared ? threads : nullptr, [&](std::size_t group) { visitGroup(group, nodes); });
 }
 }  // namespace drape

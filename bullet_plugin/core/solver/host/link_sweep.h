@@ -6,12 +6,11 @@
 // any number of threads and any width of vector. Cost: linear in the links, a few nanoseconds each.
 #pragma once
 
-#include <atomic>
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <vector>
 
+#include "bullet_plugin/core/solver/topology/group_climb.h"
 #include "bullet_plugin/core/solver/topology/revision.h"
 #include "bullet_plugin/core/threads/thread_team.h"
 #include "kernels/lib/solver/solver_node.h"
@@ -34,7 +33,7 @@ public:
                std::uint64_t partsRevision = 0);
     std::uint64_t partsRevision() const { return m_partsRevision; }
 
-    std::size_t leafCount() const { return m_leafCount; }
+    std::size_t leafCount() const { return m_climb.leafCount(); }
     std::size_t linkCount() const { return m_laneOf.size(); }
     // Sets a link, in the order of build(); call changed() after the last. restSquared: m². strength: kg, the share of
     // a violation that a visit corrects, divided by the sum of the nodes' inverse masses; 0 for a link without effect.
@@ -92,7 +91,6 @@ private:
 
     void addBlock(const LinkNodes& link);
     void visitGroup(std::size_t group, SolverNode* nodes) const;
-    void climb(std::size_t leaf, SolverNode* nodes);
 
     std::vector<Block> m_blocks;
     std::vector<std::size_t> m_firsts;    // by group, the first of its blocks; then the end
@@ -100,8 +98,7 @@ private:
     std::vector<Batch> m_batchOf;         // by link
     std::uint64_t m_revision = 0;
     bool m_isNew = true;
-    std::size_t m_leafCount = 1;
+    GroupClimb m_climb;
     std::uint64_t m_partsRevision = 0;
-    std::unique_ptr<std::atomic<bool>[]> m_halfDone;  // by group: whether one of its halves is done in this sweep
 };
 }  // namespace drape

@@ -58,7 +58,7 @@ private:
 };
 }  // namespace
 
-void ClothParts::cut(std::vector<Vec3> positions)
+void ClothParts::cut(std::vector<Vec3> positions, std::size_t mostNodes, ThreadTeam* threads)
 {
     for (Vec3& position : positions)
         for (float* coordinate : {&position.x, &position.y, &position.z})
@@ -67,25 +67,33 @@ void ClothParts::cut(std::vector<Vec3> positions)
     std::iota(m_order.begin(), m_order.end(), 0);
     m_firsts = {0, positions.size()};
     Bisection bisection(positions, m_order);
-    while (positions.size() > kMostNodes * leafCount())
+    const auto forLeaves = [&](const auto& work)
     {
-        std::vector<std::size_t> finer{0};
+        if (threads) return threads->run(leafCount(), work);
         for (std::size_t leaf = 0; leaf < leafCount(); ++leaf)
+            work(leaf);
+    };
+    while (positions.size() > mostNodes * leafCount())
+    {
+        std::vector<std::size_t> finer(2 * leafCount() + 1, 0);
+        const auto halve = [&](std::size_t leaf)
         {
             bisection.halve(m_firsts[leaf], m_firsts[leaf + 1]);
-            finer.push_back(Bisection::middle(m_firsts[leaf], m_firsts[leaf + 1]));
-            finer.push_back(m_firsts[leaf + 1]);
-        }
+            finer[2 * leaf + 1] = Bisection::middle(m_firsts[leaf], m_firsts[leaf + 1]);
+            finer[2 * leaf + 2] = m_firsts[leaf + 1];
+        };
+        forLeaves(halve);
         m_firsts = finer;
     }
     m_leafOf.resize(positions.size());
-    for (std::size_t leaf = 0; leaf < leafCount(); ++leaf)
+    const auto number = [&](std::size_t leaf)
     {
         const auto begin = m_order.begin() + static_cast<std::ptrdiff_t>(m_firsts[leaf]);
         const auto end = m_order.begin() + static_cast<std::ptrdiff_t>(m_firsts[leaf + 1]);
         std::sort(begin, end);
         std::for_each(begin, end, [&](int node) { m_leafOf[static_cast<std::size_t>(node)] = firstLeaf() + leaf; });
-    }
+    };
+    forLeaves(number);
     m_revision = newRevision();
 }
 }  // namespace drape

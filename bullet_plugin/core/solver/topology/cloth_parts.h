@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "bullet_plugin/core/threads/thread_team.h"
 #include "kernels/shared/types.h"
 
 namespace drape
@@ -28,7 +29,8 @@ public:
 
     // positions: of all nodes, m, at rest or at any other time. They determine how well the parts are cut and
     // the order of work. A position that is not a number counts as 0.
-    void cut(std::vector<Vec3> positions);
+    // mostNodes: of a part. threads: null for the caller alone.
+    void cut(std::vector<Vec3> positions, std::size_t mostNodes = kMostNodes, ThreadTeam* threads = nullptr);
 
     // Differs after cut() from that of any other cut.
     std::uint64_t revision() const { return m_revision; }
@@ -44,18 +46,23 @@ public:
     // Returns the group of a feature. nodes: -1 beyond the feature's last node.
     std::size_t groupOf(const int nodes[3]) const
     {
-        std::size_t group = m_leafOf[static_cast<std::size_t>(nodes[0])];
+        std::size_t group = leafOf(nodes[0]);
         for (int k = 1; k < 3 && nodes[k] >= 0; ++k)
+            group = commonGroup(group, leafOf(nodes[k]));
+        return group;
+    }
+    // Returns the group of the leaf that has the node.
+    std::size_t leafOf(int node) const { return m_leafOf[static_cast<std::size_t>(node)]; }
+    // Returns the smallest group that contains both.
+    static std::size_t commonGroup(std::size_t group, std::size_t other)
+    {
+        // Climbs from both to their common ancestor; one is at the other's height or lower.
+        while (group != other)
         {
-            // Climbs from both groups to their common ancestor; one is at the other's height or lower.
-            std::size_t other = m_leafOf[static_cast<std::size_t>(nodes[k])];
-            while (group != other)
-            {
-                if (other > group)
-                    other /= 2;
-                else
-                    group /= 2;
-            }
+            if (other > group)
+                other /= 2;
+            else
+                group /= 2;
         }
         return group;
     }
