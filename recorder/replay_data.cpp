@@ -14,7 +14,7 @@ namespace
 {
 using Json = nlohmann::ordered_json;
 
-constexpr double kPartsOfSize = 16384;  // fractions of the soft bodies' size: a tenth of a pixel
+constexpr double kPartsOfSize = 10000;  // fractions of the soft bodies' size: a fifth of a pixel
 constexpr double kPartsOfTurn = 32767;  // fractions of 1, for a quaternion's numbers
 constexpr double kLevels = 254;         // steps of a channel; level 0 is for nodes without a value
 

@@ -15,6 +15,7 @@ class Player {
     this.frames = Math.max(...replay.runs.map(run => run.frames));
     this.frameTime = replay.runs[0].frameTime;
     this.frame = 0;
+    this.time = 0;  // s; between this frame and the next
     this.playing = false;
     this.makeRenderer();
     this.makeLabels();
@@ -106,6 +107,7 @@ class Player {
 
   seek(frame) {
     this.frame = Math.max(0, Math.min(this.frames - 1, Math.round(frame)));
+    this.time = this.frame * this.frameTime;
     this.drawSoon();
   }
 
@@ -114,18 +116,17 @@ class Player {
     element("play-icon").setAttribute("d", playing ? kIcons.pause : kIcons.play);
     element("play").setAttribute("aria-label", playing ? "Pause" : "Play");
     if (!playing) return;
-    let time = (this.frame >= this.frames - 1 ? 0 : this.frame) * this.frameTime, before = performance.now();
+    if (this.frame === this.frames - 1) this.seek(0);
+    let before = performance.now();
     const advance = now => {
       if (!this.playing) return;
-      // The slider may have moved the frame meanwhile.
-      if (Math.floor(time / this.frameTime + 1e-6) !== this.frame && this.frame !== this.frames - 1) time = this.frame * this.frameTime;
-      time += Math.min(now - before, 100) / 1000 * Number(element("speed").value);
+      const time = this.time + Math.min(now - before, 100) / 1000 * Number(element("speed").value);
       before = now;
-      this.seek(Math.min(Math.floor(time / this.frameTime + 1e-6), this.frames - 1));
-      if (this.frame >= this.frames - 1) this.play(false);
-      else requestAnimationFrame(advance);
+      this.seek(Math.floor(time / this.frameTime + 1e-6));
+      this.time = time;
+      if (this.frame < this.frames - 1) requestAnimationFrame(advance);
+      else this.play(false);
     };
-    this.frame = Math.floor(time / this.frameTime + 1e-6);
     requestAnimationFrame(advance);
   }
 

@@ -19,7 +19,7 @@ namespace
 class RecordingFiles : public testing::Test
 {
 protected:
-    // A triangle that rises by 1 m a frame, and a rigid one that turns by a right angle about y within two frames.
+    // A triangle that rises by 1 m a frame, and a rigid one that turns by 120 degrees about (1 1 1) within two frames.
     RecordingFiles()
     {
         m_run.m_title = "run";
@@ -36,8 +36,8 @@ protected:
         {
             for (std::size_t i = 0; i < 9; ++i)
                 soft.m_frames.push_back(soft.m_vertices[i] + (i % 3 == 1 ? float(frame) : 0));
-            const float half = 0.39269908f * float(frame);  // 22.5 degrees a frame
-            rigid.m_frames.insert(rigid.m_frames.end(), {0, -1, 0, 0, std::sin(half), 0, std::cos(half)});
+            const float half = 0.52359878f * float(frame), axis = std::sin(half) / std::sqrt(3.0f);  // 30 degrees
+            rigid.m_frames.insert(rigid.m_frames.end(), {0, -1, 0, axis, axis, axis, std::cos(half)});
         }
     }
 
@@ -101,9 +101,9 @@ TEST_F(RecordingFiles, PointCachesHaveEveryFrame)
     EXPECT_EQ(mdd.substr(8 + 4, 4), std::string("\x3f\0\0\0", 4)) << "0.5 s";
     for (std::size_t i = 0; i < 27 * 4; ++i)
         ASSERT_EQ(mdd[20 + i], soft[32 + i / 4 * 4 + 3 - i % 4]);
-    // The last frame of the rigid body is turned by 90 degrees about y, and 1 m below: (1 0 0) is at (0 -1 -1).
-    const float last[3] = {0, -1, -1};
-    for (std::size_t i = 0; i < 3; ++i)
+    // In its last frame the rigid body's x points along y, y along z and z along x, and it is 1 m lower.
+    const float last[9] = {0, 0, 0, -1, -1, 0, 0, -2, 0};
+    for (std::size_t i = 0; i < 9; ++i)
         EXPECT_NEAR(numberAt<float>(rigid, 32 + 4 * (18 + i)), last[i], 1e-6);
 }
 

@@ -271,11 +271,11 @@ class BrowserTest(ReplayTest):
             self.fail("no Chromium here (chromium), and DRAPE_TEST_NEED_BROWSER is 1")
         self.skipTest("no Chromium here (chromium)")
 
-    def browse(self, page, *options):
+    def browse(self, page, *options, budget=20000):
         with tempfile.TemporaryDirectory() as profile:
             return subprocess.run(
                 [BROWSER, "--headless", "--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
-                 "--hide-scrollbars", f"--user-data-dir={profile}", "--virtual-time-budget=20000", *options, page],
+                 "--hide-scrollbars", f"--user-data-dir={profile}", f"--virtual-time-budget={budget}", *options, page],
                 capture_output=True, text=True, timeout=300, check=True).stdout
 
     def screenshot(self, name, choices, size="900,600"):
@@ -311,21 +311,52 @@ class BrowserTest(ReplayTest):
         for third in thirds:
             self.assertGreater(pixels_like((third, size), is_red), 500)
 
+    def probe(self, script):
+        """Runs a script in the page once it is drawn, and returns what the script assigns to `probe`."""
+        path = self.path("probe.html")
+        with open(self.page, encoding="utf-8") as file:
+            text = file.read()
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(text.replace("</body>", """<script>
+              const started = setInterval(async () => {
+                if (!window.player) return;
+                clearInterval(started);
+                let probe;
+                %s
+                document.body.dataset.probe = JSON.stringify(probe);
+              }, 50);</script></body>""" % script))
+        dom = self.browse(f"file://{path}", "--window-size=300,300", "--dump-dom", budget=200000)
+        return json.loads(re.search(r'data-probe="([^"]*)"', dom).group(1).replace("&quot;", '"'))
+
+    def test_controls_play_and_seek(self):
+        found = self.probe("""
+          const time = document.getElementById("time"), play = document.getElementById("play");
+          probe = [];
+          // Chromium draws no further frames for --dump-dom.
+          window.requestAnimationFrame = draw => setTimeout(() => draw(performance.now()), 16);
+          const wait = async expected => {
+            for (let i = 0; i < 1000 && document.body.dataset.frame !== expected; ++i)
+              await new Promise(done => setTimeout(done, 50));
+            probe.push(document.body.dataset.frame, play.getAttribute("aria-label"));
+          };
+          play.click();
+          await wait("40");
+          time.value = 7;
+          time.dispatchEvent(new Event("input"));
+          await wait("7");
+          window.dispatchEvent(new KeyboardEvent("keydown", {key: "ArrowRight"}));
+          await wait("8");""")
+        self.assertEqual(found, ["40", "Play", "7", "Play", "8", "Play"])
+
     def test_the_page_decodes_what_python_decodes(self):
         page = Page(self.page)
         frames = [page.soft(run)[2] for run in range(3)]
-        probe = """<script>window.addEventListener("load", async () => {
-          const replay = await decodeReplay(document.getElementById("data").textContent);
+        found = self.probe("""
+          const replay = player.replay;
           const sum = body => body.positions.reduce((a, b) => a + Math.abs(b), 0);
           const sums = replay.runs.map(run => sum(run.bodies.filter(body => !body.rigid)[0]));
           const corners = replay.meshes.map(mesh => mesh.corners.reduce((a, b, i) => (a * 31 + b + i) % 1000003, 0));
-          document.body.dataset.probe = JSON.stringify({sums, corners});
-        });</script></body>"""
-        path = self.path("probe.html")
-        with open(path, "w", encoding="utf-8") as file:
-            file.write(page.text.replace("</body>", probe))
-        dom = self.browse(f"file://{path}", "--dump-dom")
-        found = json.loads(re.search(r'data-probe="([^"]*)"', dom).group(1).replace("&quot;", '"'))
+          probe = {sums, corners};""")
         self.assertEqual(found["sums"],
                          [sum(abs(v) for frame in run for axis in frame for v in axis) for run in frames])
         for mesh, expected in zip(page.replay["meshes"], found["corners"]):

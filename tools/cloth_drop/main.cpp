@@ -100,8 +100,7 @@ std::string titleOf(const NamedRun& run)
 std::string remarkOf(const NamedRun& run)
 {
     const RunSummary summary = summarise(run.m_record);
-    return "step " + std::to_string(run.m_record.m_steps.size()) + ": " +
-           std::to_string(summary.m_intersectingPairsEnd) + " pairs intersect, " +
+    return std::to_string(summary.m_intersectingPairsEnd) + " pairs intersect, " +
            std::to_string(summary.m_nodesThrough) + " nodes through";
 }
 
@@ -111,6 +110,7 @@ PicturePanel panelOf(const NamedRun& run, const DropScene& scene)
     panel.m_cloth = sheetsOf(scene);
     if (!run.m_record.m_lastPositions.empty()) panel.m_cloth.m_positions = run.m_record.m_lastPositions;
     panel.m_title = titleOf(run);
+    if (run.m_record.m_capped) panel.m_title += ", step " + std::to_string(run.m_record.m_steps.size());
     panel.m_remark = remarkOf(run);
     return panel;
 }
@@ -122,7 +122,7 @@ bool writeRecordings(const Options& options, std::vector<NamedRun>& runs, std::s
     for (NamedRun& run : runs)
     {
         run.m_record.m_recording.m_title = titleOf(run);
-        run.m_record.m_recording.m_remark = remarkOf(run);
+        run.m_record.m_recording.m_remark = "at the end: " + remarkOf(run);
         if (run.m_record.m_recording.m_frameCount > 0) recordings.push_back(&run.m_record.m_recording);
     }
     ReplaySettings settings;

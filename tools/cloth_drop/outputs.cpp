@@ -96,13 +96,16 @@ bool prepareOutputs(const Options& options, std::string& error)
     if (!spares(options, obstacle, error)) return false;
     for (const Output& output : outputs)
     {
-        if (!spares(options, output, error) || !couldWrite(output.m_path, error) || !endsRight(output, error))
-            return false;
-        for (const Output* other = outputs; other != &output; ++other)
-            if (!areApart(*other, output, error)) return false;
+        if (!spares(options, output, error) || !couldWrite(output.m_path, error)) return false;
         if (!output.m_path.empty() && output.m_path != kStandardOutput && areOneFile(output.m_path, obstacle.m_path))
             error = std::string(output.m_option) + " would write over the file of --obstacle, " + obstacle.m_path;
         if (!error.empty()) return false;
+    }
+    for (const Output& output : outputs)
+    {
+        if (!endsRight(output, error)) return false;
+        for (const Output* other = outputs; other != &output; ++other)
+            if (!areApart(*other, output, error)) return false;
     }
     return true;
 }

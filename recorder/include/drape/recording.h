@@ -79,7 +79,7 @@ struct ReplaySettings
     // Title of the page.
     std::string m_title = "Drape replay";
     // Distance between two positions that the page can tell apart, m; positions are off by half of it at most. 0 means
-    // the size of the soft bodies at the start divided by 16,384.
+    // the size of the soft bodies at the start divided by 10,000.
     double m_resolution = 0;
     // Folder with three.js (three.min.js and examples/js/controls/OrbitControls.js), as Debian's package libjs-three
     // has it.
