@@ -45,15 +45,23 @@ int indexIn(const btAlignedObjectArray<Item>& array, const Item* item)
     return static_cast<int>(item - &array[0]);
 }
 
-// Returns the body's faces as triangles, and as lines the links that are no side of a face, if there are no faces.
+// Takes the body's faces as triangles, and the links to nodes without a face as lines: ropes and fringes.
 void readTopology(const btSoftBody& soft, RecordedBody& body)
 {
+    std::vector<bool> hasFace(static_cast<std::size_t>(soft.m_nodes.size()));
     for (int i = 0; i < soft.m_faces.size(); ++i)
         for (const btSoftBody::Node* node : soft.m_faces[i].m_n)
+        {
             body.m_triangles.push_back(indexIn<btSoftBody::Node>(soft.m_nodes, node));
-    for (int i = 0; i < soft.m_links.size() && body.m_triangles.empty(); ++i)
-        for (const btSoftBody::Node* node : soft.m_links[i].m_n)
-            body.m_lines.push_back(indexIn<btSoftBody::Node>(soft.m_nodes, node));
+            hasFace[static_cast<std::size_t>(body.m_triangles.back())] = true;
+        }
+    for (int i = 0; i < soft.m_links.size(); ++i)
+    {
+        const int ends[2] = {indexIn<btSoftBody::Node>(soft.m_nodes, soft.m_links[i].m_n[0]),
+                             indexIn<btSoftBody::Node>(soft.m_nodes, soft.m_links[i].m_n[1])};
+        if (!hasFace[static_cast<std::size_t>(ends[0])] || !hasFace[static_cast<std::size_t>(ends[1])])
+            body.m_lines.insert(body.m_lines.end(), ends, ends + 2);
+    }
 }
 
 void appendStretch(const btSoftBody& soft, std::vector<float>& values)

@@ -256,4 +256,15 @@ TEST_F(RecorderTest, RopesAreLines)
     recorder.record();
     EXPECT_EQ(recorder.recording().m_bodies[0].m_lines.size(), 2u * 9);
 }
+
+TEST_F(RecorderTest, FringesOfAClothAreLines)
+{
+    btSoftBody& cloth = addCloth(1);
+    cloth.appendNode(btVector3(1, 1, 0), 1);
+    cloth.appendLink(24, 25);
+    Recorder recorder(m_world);
+    recorder.record();
+    EXPECT_EQ(softOf(recorder.recording()).m_lines, (std::vector<std::int32_t>{24, 25}));
+    EXPECT_EQ(softOf(recorder.recording()).m_triangles.size(), 3u * 32);
+}
 }  // namespace drape::test

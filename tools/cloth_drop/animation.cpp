@@ -13,7 +13,7 @@ namespace drape
 {
 namespace
 {
-constexpr PictureSize kSize = {480, 400, 3};
+constexpr PictureSize kSize = {480, 400, 4};
 constexpr double kFramesPerSecond = 30;
 constexpr float kQuality = 70;  // 100 is the best
 constexpr int kPauseMs = 1500;  // at the end, before it begins again
