@@ -10,11 +10,11 @@ packages=(
   # build
   g++ cmake make ninja-build pkgconf
   # library
-  libbullet-dev ocl-icd-opencl-dev opencl-c-headers opencl-clhpp-headers
+  libbullet-dev ocl-icd-opencl-dev opencl-c-headers opencl-clhpp-headers zlib1g-dev nlohmann-json3-dev
   # an OpenCL device on any machine
   pocl-opencl-icd
-  # tools: arguments, JSON, PNG, rays; exact arithmetic for the independent check
-  libcli11-dev nlohmann-json3-dev libpng-dev libembree-dev libgmp-dev
+  # tools: arguments, PNG, WebP, rays, replay pages; exact arithmetic for the independent check
+  libcli11-dev libpng-dev libwebp-dev libembree-dev libjs-three libgmp-dev
   # data: the bunny
   glmark2-data
 )
@@ -26,6 +26,8 @@ further=(
   # published data: unpacking
   xz-utils
 )
+# The test of replay pages needs a browser, which Ubuntu has no package of.
+grep -qs '^ID=debian$' /etc/os-release && further+=(chromium)
 [[ ${1:-} == --tools ]] || packages+=("${further[@]}")
 
 if ! command -v dpkg-query >/dev/null; then

@@ -21,14 +21,26 @@ must(${CMAKE_COMMAND} -S ${SOURCE} -B ${WORK}/build -D CMAKE_PREFIX_PATH=${prefi
   -D CMAKE_BUILD_TYPE=Release -D CMAKE_CXX_FLAGS=${flags})
 must(${CMAKE_COMMAND} --build ${WORK}/build)
 must(${WORK}/build/consumer)
+must(${WORK}/build/record ${WORK}/recorded)
 
 set(ENV{PKG_CONFIG_PATH} ${prefix}/${LIBDIR}/pkgconfig)
-execute_process(COMMAND pkg-config --cflags --libs drape
+execute_process(COMMAND pkg-config --cflags --libs drape drape-recorder
   OUTPUT_VARIABLE package_flags OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
 separate_arguments(package_flags UNIX_COMMAND "${package_flags}")
 must(${COMPILER} -std=c++11 ${flags} ${SOURCE}/main.cpp -o ${WORK}/consumer_by_pkg_config ${package_flags}
   -Wl,-rpath,${prefix}/${LIBDIR})
 must(${WORK}/consumer_by_pkg_config)
+
+# The recorder alone needs neither the plugin nor OpenCL.
+execute_process(COMMAND pkg-config --cflags --libs drape-recorder
+  OUTPUT_VARIABLE recorder_flags OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
+if(recorder_flags MATCHES "-ldrape |OpenCL")
+  message(FATAL_ERROR "The recorder asks for more than itself: ${recorder_flags}")
+endif()
+separate_arguments(recorder_flags UNIX_COMMAND "${recorder_flags}")
+must(${COMPILER} -std=c++11 ${flags} ${SOURCE}/record.cpp -o ${WORK}/record_by_pkg_config ${recorder_flags}
+  -Wl,-rpath,${prefix}/${LIBDIR})
+must(${WORK}/record_by_pkg_config ${WORK}/recorded_by_pkg_config)
 
 # An app in the other precision: told by the compiler where it has the package's flags, else by the linker.
 set(other -DBT_USE_DOUBLE_PRECISION)

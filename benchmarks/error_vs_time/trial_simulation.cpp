@@ -71,6 +71,7 @@ public:
         m_crossings.follow(m_positions);
         return m_positions;
     }
+    const btCollisionWorld& world() override { return m_world.world(); }
     std::string backend() const override { return m_trial.method(); }
     std::string device() const override { return m_plugin ? m_plugin->device().m_device.m_name : "host"; }
     std::string deviceReason() const override { return m_plugin ? m_plugin->device().m_reason : ""; }

@@ -315,7 +315,7 @@ TEST_F(Outputs, APictureOfAComparisonShowsEveryRun)
     header.version = PNG_IMAGE_VERSION;
     ASSERT_NE(png_image_begin_read_from_file(&header, path("all.PNG").c_str()), 0) << header.message;
     header.format = PNG_FORMAT_RGB;
-    constexpr std::size_t kWidth = 960, kHeight = 720, kGap = 8;
+    constexpr std::size_t kWidth = 720, kHeight = 720, kGap = 8;
     ASSERT_EQ(header.width, 3 * kWidth + 2 * kGap);
     ASSERT_EQ(header.height, kHeight);
     std::vector<std::uint8_t> pixels(PNG_IMAGE_SIZE(header));

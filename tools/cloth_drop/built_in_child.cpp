@@ -53,6 +53,7 @@ std::vector<std::string> childArguments(const Options& options, BulletMode mode)
         "--stream-steps"};
     if (options.m_self) arguments.emplace_back("--self");
     if (!options.m_picture.empty()) arguments.emplace_back("--stream-positions");
+    if (options.records()) arguments.emplace_back("--stream-frames");
     return arguments;
 }
 
@@ -69,6 +70,7 @@ void describe(RunRecord& record, BulletMode mode, const DropScene& scene)
     record.m_obstacleTriangles = scene.m_obstacle.triangleCount();
     record.m_thickness = scene.m_thickness;
     record.m_lastPositions = sheets.m_positions;
+    record.m_recording.m_frameTime = scene.m_dt;
 }
 }  // namespace
 
@@ -81,7 +83,10 @@ bool runBuiltInChild(const Options& options, BulletMode mode, const ChildCap& ca
         childArguments(options, mode), cap,
         [&](int step, const std::string& line)
         {
-            record.m_steps.push_back(stepFromLine(line, record.m_lastPositions));
+            if (step > 0)
+                record.m_steps.push_back(stepFromLine(line, record));
+            else
+                startFromLine(line, record.m_recording);
             progress.show(step);
         },
         [] { return interruption().empty(); });
@@ -93,6 +98,6 @@ bool runBuiltInChild(const Options& options, BulletMode mode, const ChildCap& ca
 void streamBuiltIn(const Options& options, const DropScene& scene)
 {
     const std::unique_ptr<Simulation> simulation = makeBulletSimulation(scene, options.m_bulletMode);
-    streamRun(*simulation, scene, options.m_steps, {}, options.m_streamPositions);
+    streamRun(*simulation, scene, options.m_steps, {}, options.m_streamPositions, options.m_streamFrames);
 }
 }  // namespace drape

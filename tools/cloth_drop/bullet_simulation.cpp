@@ -45,6 +45,7 @@ public:
     }
 
     const std::vector<float>& positions() override { return m_world.positions(); }
+    const btCollisionWorld& world() override { return m_world.world(); }
     std::string backend() const override
     {
         return m_mode == BulletMode::Stock   ? "bullet (stock)"

@@ -1,4 +1,5 @@
 #include <drape/drape.h>
+#include <drape/recorder.h>
 
 #include <iostream>
 
@@ -49,6 +50,8 @@ public:
     }
 
     const std::vector<float>& positions() override { return m_world.positions(); }
+    const btCollisionWorld& world() override { return m_world.world(); }
+    void addContacts(Recorder& recorder) const override { recorder.addContacts(*m_plugin); }
     std::string backend() const override { return m_plugin->device().m_onHost ? "host" : "opencl"; }
     std::string device() const override { return m_plugin->device().m_device.m_name; }
     std::string deviceReason() const override { return m_plugin->device().m_reason; }

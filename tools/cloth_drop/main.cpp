@@ -1,7 +1,9 @@
 // cloth_drop: drops a cloth on an obstacle in Bullet, with Drape or Bullet's own collision, and reports.
 #include <chrono>
+#include <filesystem>
 #include <iostream>
 
+#include "tools/cloth_drop/animation.h"
 #include "tools/cloth_drop/built_in_child.h"
 #include "tools/cloth_drop/interruption.h"
 #include "tools/cloth_drop/outputs.h"
@@ -15,6 +17,8 @@ namespace drape
 {
 namespace
 {
+constexpr std::size_t kMostTargets = 60;  // for --gltf: a frame in four of the default run
+
 int fail(int exitCode, const std::string& reason)
 {
     return drape::fail("cloth_drop", exitCode, reason);
@@ -49,6 +53,7 @@ bool runChosen(const Options& options, const DropScene& scene, NamedRun& run, st
     Progress progress(run.m_name, options.m_steps, options.m_quiet);
     RunHooks hooks;
     hooks.m_afterStep = [&](int number, const StepRecord&) { progress.show(number); };
+    hooks.m_records = options.records();
     const auto start = std::chrono::steady_clock::now();
     const bool limited = options.m_timeLimit > 0;
     const std::chrono::duration<double> limit(options.m_timeLimit);
@@ -86,21 +91,66 @@ bool runFirst(const Options& options, const DropScene& scene, NamedRun& run, std
     return false;
 }
 
+std::string titleOf(const NamedRun& run)
+{
+    if (run.m_name == "drape") return "Drape, " + run.m_record.m_backend;
+    return "Bullet" + run.m_record.m_backend.substr(std::string("bullet").size());
+}
+
+std::string remarkOf(const NamedRun& run)
+{
+    const RunSummary summary = summarise(run.m_record);
+    return std::to_string(summary.m_intersectingPairsEnd) + " pairs intersect, " +
+           std::to_string(summary.m_nodesThrough) + " nodes through";
+}
+
 PicturePanel panelOf(const NamedRun& run, const DropScene& scene)
 {
     PicturePanel panel;
     panel.m_cloth = sheetsOf(scene);
     if (!run.m_record.m_lastPositions.empty()) panel.m_cloth.m_positions = run.m_record.m_lastPositions;
-    const RunSummary summary = summarise(run.m_record);
-    panel.m_title = (run.m_name == "drape" ? "Drape, " : "") + run.m_record.m_backend;
-    panel.m_remark = "step " + std::to_string(run.m_record.m_steps.size()) + ": " +
-                     std::to_string(summary.m_intersectingPairsEnd) + " pairs intersect, " +
-                     std::to_string(summary.m_nodesThrough) + " nodes through";
+    panel.m_title = titleOf(run);
+    if (run.m_record.m_capped) panel.m_title += ", step " + std::to_string(run.m_record.m_steps.size());
+    panel.m_remark = remarkOf(run);
     return panel;
 }
 
+// Writes what is made of all frames: the page, the point cache and glTF. The latter two have the first run alone.
+bool writeRecordings(const Options& options, std::vector<NamedRun>& runs, std::string& error)
+{
+    std::vector<const Recording*> recordings;
+    for (NamedRun& run : runs)
+    {
+        run.m_record.m_recording.m_title = titleOf(run);
+        run.m_record.m_recording.m_remark = "at the end: " + remarkOf(run);
+        if (run.m_record.m_recording.m_frameCount > 0) recordings.push_back(&run.m_record.m_recording);
+    }
+    ReplaySettings settings;
+    settings.m_title = "cloth_drop: " + std::filesystem::path(options.m_obstacle).filename().string();
+    const Recording& first = runs.front().m_record.m_recording;
+    return (options.m_replay.empty() || writeReplay(options.m_replay, recordings, settings, error)) &&
+           (options.m_pointCache.empty() || writePointCaches(options.m_pointCache, first, error)) &&
+           (options.m_gltf.empty() || writeGltf(options.m_gltf, first, kMostTargets, error));
+}
+
+// Draws all frames, and stops when a signal comes. Keeps an error that is there already.
+void drawAnimation(const Options& options, const DropScene& scene, const std::vector<NamedRun>& runs,
+                   std::string& error)
+{
+    std::vector<const Recording*> recordings;
+    for (const NamedRun& run : runs)
+        if (run.m_record.m_recording.m_frameCount > 0) recordings.push_back(&run.m_record.m_recording);
+    Progress progress("animation", animationRows(recordings), options.m_quiet, "row");
+    const PictureHooks hooks = {[&](int rows) { progress.show(rows); }, [] { return interruption().empty(); }};
+    std::string problem;
+    if (writeAnimation(options.m_animation, recordings, scene.m_obstacle, hooks, problem)) return;
+    if (problem.empty()) problem = interruption() + "; no animation is written";
+    if (error.empty()) error = problem;
+}
+
 // Draws the runs' last frames, and stops when a signal comes. Keeps an error that is there already.
-void drawPicture(const Options& options, const DropScene& scene, const std::vector<NamedRun>& runs, std::string& error)
+void drawLastFrames(const Options& options, const DropScene& scene, const std::vector<NamedRun>& runs,
+                    std::string& error)
 {
     std::vector<PicturePanel> panels;
     for (const NamedRun& run : runs)
@@ -141,13 +191,14 @@ int run(const Options& options)
     const bool ran = runFirst(options, scene, runs[0], error, exitCode);
     if (ran && options.m_compare) runBuiltIns(options, scene, runs, error);
     if (error.empty()) error = interruption();
-    const bool draws = ran && !options.m_picture.empty() && interruption().empty();
+    const bool draws = ran && !(options.m_picture.empty() && options.m_animation.empty()) && interruption().empty();
     if (!draws) stopListening();
     if (!ran && runs[0].m_record.m_steps.empty()) return fail(exitCode, error);
     // The results are written first: the picture takes seconds and may be given up.
     std::string writeError;
-    const bool written = writeOutputs(options, runs, writeError);
-    if (draws) drawPicture(options, scene, runs, error);
+    const bool written = writeOutputs(options, runs, writeError) && writeRecordings(options, runs, writeError);
+    if (draws && !options.m_picture.empty()) drawLastFrames(options, scene, runs, error);
+    if (draws && !options.m_animation.empty()) drawAnimation(options, scene, runs, error);
     stopListening();
     if (!written) return fail(kExitFailed, writeError);
     return error.empty() ? judge(options, runs) : fail(exitCode, error);

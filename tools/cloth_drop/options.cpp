@@ -151,12 +151,20 @@ void addOutputOptions(CLI::App& app, Options& options)
     add("--frames", options.m_frames, "DIR", "write obstacle.ply, and cloth_NNNN.ply for each step");
     add("--picture", options.m_picture, "FILE.png",
         "write a shaded picture (PNG) of the last frame; with --compare it shows all runs side by side");
+    add("--replay", options.m_replay, "FILE.html",
+        "write a page that plays the run in a browser; with --compare it shows all runs side by side");
+    add("--animation", options.m_animation, "FILE.webp",
+        "write a shaded animation (WebP); with --compare it shows all runs side by side");
+    add("--point-cache", options.m_pointCache, "DIR",
+        "write OBJ, PC2 and MDD files of the run, for Blender and Houdini");
+    add("--gltf", options.m_gltf, "FILE.glb", "write the run as glTF (.glb) with 60 morph targets at most");
     app.add_option("--validate-hash", options.m_validateHash, "exit with 3 if the run's hash differs from H")
         ->type_name("H")
         ->transform(CLI::Validator(hash, ""));
     app.add_flag("--quiet", options.m_quiet, "print neither progress nor summary");
     app.add_flag("--stream-steps", options.m_streamSteps, "")->group("");
     app.add_flag("--stream-positions", options.m_streamPositions, "")->group("");
+    app.add_flag("--stream-frames", options.m_streamFrames, "")->group("");
 }
 
 std::string conflict(const Options& options)
@@ -170,6 +178,9 @@ std::string conflict(const Options& options)
         return "--time-limit with --backend bullet leaves no cloth for --frames";
     if (options.m_obstacle.empty()) return "--obstacle is empty";
     if (options.m_picture == "-") return "--picture needs a file, not -";
+    if (options.m_animation == "-") return "--animation needs a file, not -";
+    if (options.m_replay == "-") return "--replay needs a file, not -";
+    if (options.m_gltf == "-") return "--gltf needs a file, not -";
     return "";
 }
 }  // namespace

@@ -42,12 +42,19 @@ struct Options
     bool m_compareSoftPair = false;
     double m_compareCap = 60.0;
     std::string m_csv, m_json, m_frames, m_picture;
+    std::string m_replay, m_pointCache, m_gltf, m_animation;
     std::string m_validateHash;  // 16 lower-case hex digits or empty
     bool m_quiet = false;
     bool m_streamSteps = false;      // for a child of --compare: a line a step on standard output, nothing else
     bool m_streamPositions = false;  // each line with the nodes' positions
+    bool m_streamFrames = false;     // each line with a frame of the recording
 
     bool usesDrape() const { return m_backend != "bullet"; }
+    // Returns whether an output needs all frames.
+    bool records() const
+    {
+        return !m_replay.empty() || !m_pointCache.empty() || !m_gltf.empty() || !m_animation.empty() || m_streamFrames;
+    }
 };
 
 // Returns true if the program goes on. Returns false if it must leave with `exitCode`, after printing the help or one

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <filesystem>
 #include <iostream>
+#include <string_view>
 
 #include <unistd.h>
 
@@ -23,6 +24,8 @@ struct Output
 {
     const char* m_option;
     const std::string& m_path;
+    std::string_view m_ending = "";  // the ending of its name; empty: any
+    const char* m_format = "";
 };
 
 // Refuses two outputs to one file, of which only one would remain.
@@ -56,13 +59,15 @@ bool spares(const Options& options, const Output& file, std::string& error)
     return error.empty();
 }
 
-// Accepts .png and names without an extension. Any other extension promises a format that is not written.
-bool isPngName(const std::string& path, std::string& error)
+// Accepts the ending of the option's format, and names without one. Any other promises a format that is not written.
+bool endsRight(const Output& output, std::string& error)
 {
-    std::string ending = fs::path(path).extension().string();
+    std::string ending = fs::path(output.m_path).extension().string();
     std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
-    if (!ending.empty() && ending != ".png") error = "--picture writes a PNG, and " + path + " does not end in .png";
-    return error.empty();
+    if (output.m_ending.empty() || ending.empty() || ending == output.m_ending) return true;
+    error = std::string(output.m_option) + " writes a " + output.m_format + ", and " + output.m_path +
+            " does not end in " + std::string(output.m_ending);
+    return false;
 }
 
 bool makeFolder(const std::string& path, std::string& error)
@@ -80,7 +85,13 @@ bool makeFolder(const std::string& path, std::string& error)
 bool prepareOutputs(const Options& options, std::string& error)
 {
     if (!options.m_frames.empty() && !makeFolder(options.m_frames, error)) return false;
-    const Output outputs[] = {{"--csv", options.m_csv}, {"--json", options.m_json}, {"--picture", options.m_picture}};
+    if (!options.m_pointCache.empty() && !makeFolder(options.m_pointCache, error)) return false;
+    const Output outputs[] = {{"--csv", options.m_csv},
+                              {"--json", options.m_json},
+                              {"--picture", options.m_picture, ".png", "PNG"},
+                              {"--replay", options.m_replay, ".html", "page"},
+                              {"--animation", options.m_animation, ".webp", "WebP"},
+                              {"--gltf", options.m_gltf, ".glb", "binary glTF"}};
     const Output obstacle = {"--obstacle", options.m_obstacle};
     if (!spares(options, obstacle, error)) return false;
     for (const Output& output : outputs)
@@ -90,8 +101,13 @@ bool prepareOutputs(const Options& options, std::string& error)
             error = std::string(output.m_option) + " would write over the file of --obstacle, " + obstacle.m_path;
         if (!error.empty()) return false;
     }
-    return isPngName(options.m_picture, error) && areApart(outputs[0], outputs[1], error) &&
-           areApart(outputs[0], outputs[2], error) && areApart(outputs[1], outputs[2], error);
+    for (const Output& output : outputs)
+    {
+        if (!endsRight(output, error)) return false;
+        for (const Output* other = outputs; other != &output; ++other)
+            if (!areApart(*other, output, error)) return false;
+    }
+    return true;
 }
 
 bool writeOutputs(const Options& options, const std::vector<NamedRun>& runs, std::string& error)

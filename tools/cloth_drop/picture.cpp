@@ -8,9 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "tools/cloth_drop/image.h"
 #include "tools/cloth_drop/picture_label.h"
-#include "tools/cloth_drop/ray_scene.h"
 #include "tools/cloth_drop/smooth_mesh.h"
 
 namespace drape
@@ -19,19 +17,22 @@ namespace
 {
 // Size of the only panel, in pixels.
 constexpr int kWidth = 1280, kHeight = 960;
-constexpr int kSideWidth = 960, kSideHeight = 720;  // size of each panel if there are several
+constexpr int kSideWidth = 720, kSideHeight = 720;  // size of each panel if there are several
 constexpr int kGap = 8;                             // pixels between panels
 constexpr int kStrata = 6;                          // samples a pixel and axis; each carries one shadow and one sky ray
 constexpr std::size_t kSmoothTriangles =
-    100000;  // a coarse cloth is drawn with at least so many: none looks like facets
+    100000;                                    // a coarse cloth is drawn with at least so many: none looks like facets
+constexpr std::size_t kMeshTriangles = 20000;  // edges of larger cloths would hide the cloth
+constexpr double kEdgeWidth = 0.0011;          // half width of an edge in radii of the view
 constexpr double kPi = 3.14159265358979323846;
 constexpr double kFieldOfView = 30 * kPi / 180;
 
 const Vector3 kClothFront = {0.42, 0.025, 0.04}, kClothBack = {0.62, 0.36, 0.12};
+const Vector3 kClothEdge = {0.09, 0.004, 0.008};
 const Vector3 kStone = {0.50, 0.50, 0.49}, kFloor = {0.60, 0.61, 0.63};
 const Vector3 kSkyLow = {0.62, 0.66, 0.71}, kSkyHigh = {0.78, 0.83, 0.90};
 const Vector3 kKeyLight = {3.1, 2.8, 2.4}, kSkyLight = {0.48, 0.54, 0.64};
-const Vector3 kTowardsLight = normalized({-0.55, 1.0, 0.6});
+const Vector3 kTowardsLight = normalized({-0.75, 1.0, -0.1});
 constexpr double kLightSpread = 0.12;  // radius of the light's disc seen from unit distance: soft shadows
 
 struct Sample
@@ -47,18 +48,18 @@ double hashUnit(std::uint32_t seed)
     return ((state >> 22) ^ state) * (1.0 / 4294967296.0);
 }
 
-// Returns one of kStrata² cells, jittered and rotated by a pixel's own offset, so that a pixel's samples cover the
+// Returns one of strata² cells, jittered and rotated by a pixel's own offset, so that a pixel's samples cover the
 // square evenly.
-Sample stratum(std::uint32_t pixel, int index, std::uint32_t purpose)
+Sample stratum(std::uint32_t pixel, int index, std::uint32_t purpose, int strata)
 {
-    const int cells = kStrata * kStrata;
+    const int cells = strata * strata;
     const int cell =
         static_cast<int>((static_cast<std::uint32_t>(index) * 7u + purpose * 11u) % static_cast<unsigned>(cells));
     const std::uint32_t seed = pixel * 2654435761u + purpose * 40503u;
     const double jitterU = hashUnit(seed + static_cast<std::uint32_t>(index) * 97u);
     const double jitterV = hashUnit(seed + static_cast<std::uint32_t>(index) * 131u + 17u);
-    const double u = (cell % kStrata + jitterU) / kStrata + hashUnit(seed ^ 0x68bc21ebu);
-    const double v = (cell / kStrata + jitterV) / kStrata + hashUnit(seed ^ 0x02e5be93u);
+    const double u = (cell % strata + jitterU) / strata + hashUnit(seed ^ 0x68bc21ebu);
+    const double v = (cell / strata + jitterV) / strata + hashUnit(seed ^ 0x02e5be93u);
     return {u - std::floor(u), v - std::floor(v)};
 }
 
@@ -100,19 +101,21 @@ Vector3 sky(const Vector3& direction)
     return mix(kSkyLow, kSkyHigh, std::clamp(2 * direction.y, 0.0, 1.0));
 }
 
-Vector3 albedo(const SurfacePoint& hit)
+Vector3 albedo(const SurfacePoint& hit, const View& view)
 {
     if (hit.m_surface == Surface::Floor) return kFloor;
     if (hit.m_surface == Surface::Obstacle) return kStone;
+    if (hit.m_edge < kEdgeWidth * view.m_radius) return kClothEdge;
     return hit.m_back ? kClothBack : kClothFront;
 }
 
-Vector3 shade(const RayScene& scene, const Vector3& direction, const SurfacePoint& hit, std::uint32_t pixel, int index)
+Vector3 shade(const RayScene& scene, const Vector3& direction, const SurfacePoint& hit, std::uint32_t pixel, int index,
+              int strata)
 {
     if (hit.m_surface == Surface::None) return sky(direction);
     const Vector3 origin = hit.m_point + (1e-4 * scene.view().m_radius) * hit.m_flat;
-    const Vector3 towardsLight = lightDirection(stratum(pixel, index, 1));
-    const Vector3 skyRay = cosineDirection(hit.m_normal, stratum(pixel, index, 2));
+    const Vector3 towardsLight = lightDirection(stratum(pixel, index, 1, strata));
+    const Vector3 skyRay = cosineDirection(hit.m_normal, stratum(pixel, index, 2, strata));
     const double facing = std::max(0.0, dot(hit.m_normal, towardsLight));
     const bool lit = facing > 0 && !scene.blocked(origin, towardsLight, 1e9);
     const bool open = dot(hit.m_flat, skyRay) > 0 && !scene.blocked(origin, skyRay, 1.5 * scene.view().m_radius);
@@ -120,7 +123,7 @@ Vector3 shade(const RayScene& scene, const Vector3& direction, const SurfacePoin
     // The sky lights from above, and the floor reflects a little light from below.
     const Vector3 fill = skyRay.y > 0 ? kSkyLight : 0.45 * kSkyLight;
     light += (open ? 1.0 : 0.12) * fill;
-    Vector3 colour = multiply(albedo(hit), light);
+    Vector3 colour = multiply(albedo(hit, scene.view()), light);
     if (hit.m_surface == Surface::Cloth)  // sheen of woven fibres at grazing view
     {
         const double grazing = std::pow(1 - std::fabs(dot(hit.m_normal, direction)), 4);
@@ -145,7 +148,7 @@ struct Camera
 
     Camera(const View& view, int width, int height) : m_width(width), m_height(height)
     {
-        m_forward = normalized({-0.45, -0.30, -1.0});
+        m_forward = normalized({1.0, -0.30, -0.75});
         const double distance = 0.86 * view.m_radius / std::sin(0.5 * kFieldOfView);
         m_eye = view.m_centre - distance * m_forward;
         m_right = normalized(cross(m_forward, {0, 1, 0}));
@@ -159,20 +162,20 @@ struct Camera
     }
 };
 
-// Draws row y of the panel whose first column in the image is `left`.
-void renderRow(const RayScene& scene, const Camera& camera, int y, int left, Image& image)
+// Draws row y of the panel whose first column in the image is `left`, with strata² samples a pixel.
+void renderRow(const RayScene& scene, const Camera& camera, int strata, int y, int left, Image& image)
 {
     for (int x = 0; x < camera.m_width; ++x)
     {
         const auto pixel = static_cast<std::uint32_t>(y * camera.m_width + x);
         Vector3 sum;
-        for (int index = 0; index < kStrata * kStrata; ++index)
+        for (int index = 0; index < strata * strata; ++index)
         {
-            const Sample place = {(index % kStrata + 0.5) / kStrata, (index / kStrata + 0.5) / kStrata};
+            const Sample place = {(index % strata + 0.5) / strata, (index / strata + 0.5) / strata};
             const Vector3 direction = camera.direction(x + place.u, y + place.v);
-            sum += shade(scene, direction, scene.trace(camera.m_eye, direction), pixel, index);
+            sum += shade(scene, direction, scene.trace(camera.m_eye, direction), pixel, index, strata);
         }
-        const Vector3 mean = (1.0 / (kStrata * kStrata)) * sum;
+        const Vector3 mean = (1.0 / (strata * strata)) * sum;
         for (int axis = 0; axis < 3; ++axis)
             image.at(left + x, y)[axis] = encode(mean[axis]);
     }
@@ -223,7 +226,7 @@ ShadedMesh shadedCloth(const TriangleMesh& cloth)
     int levels = 0;
     for (std::size_t count = cloth.triangleCount(); count > 0 && count < kSmoothTriangles; count *= 4)
         ++levels;
-    return smoothMesh(cloth, levels);
+    return smoothMesh(cloth, levels, cloth.triangleCount() <= kMeshTriangles);
 }
 
 int heightOf(std::size_t panels)
@@ -237,31 +240,42 @@ int pictureRows(std::size_t panels)
     return static_cast<int>(panels) * heightOf(panels);
 }
 
-bool writePicture(const std::string& path, const std::vector<PicturePanel>& panels, const TriangleMesh& obstacle,
-                  const PictureHooks& hooks, std::string& error)
+PictureSize pictureSize(std::size_t panels)
 {
-    const bool several = panels.size() > 1;
-    const int width = several ? kSideWidth : kWidth, height = heightOf(panels.size());
+    return {panels > 1 ? kSideWidth : kWidth, heightOf(panels), kStrata};
+}
+
+bool drawPicture(const std::vector<PicturePanel>& panels, const TriangleMesh& obstacle, const View& view,
+                 const PictureSize& size, const PictureHooks& hooks, Image& image, std::string& error)
+{
     const int count = static_cast<int>(panels.size());
-    Image image(count * width + (count - 1) * kGap, height);
-    View view;
+    image = Image(count * size.m_width + (count - 1) * kGap, size.m_height);
     for (int i = 0; i < count; ++i)
     {
         const PicturePanel& panel = panels[static_cast<std::size_t>(i)];
-        ShadedMesh cloth = shadedCloth(panel.m_cloth);
-        if (i == 0) view = viewOf(cloth.m_mesh, obstacle);
-        const RayScene scene(std::move(cloth), {obstacle, vertexNormals(obstacle), true}, view);
+        const RayScene scene(shadedCloth(panel.m_cloth), {obstacle, vertexNormals(obstacle), {}, true}, view);
         if (!scene.good())
         {
-            error = path + ": cannot draw: Embree did not start";
+            error = "cannot draw: Embree did not start";
             return false;
         }
-        const Camera camera(view, width, height);
-        const int left = i * (width + kGap);
-        const auto row = [&](int y) { renderRow(scene, camera, y, left, image); };
-        if (!renderPanel(height, row, hooks, i * height)) return false;
-        if (several) drawLabel(panel.m_title, panel.m_remark, left, width, image);
+        const Camera camera(view, size.m_width, size.m_height);
+        const int left = i * (size.m_width + kGap);
+        const auto row = [&](int y) { renderRow(scene, camera, size.m_samples, y, left, image); };
+        if (!renderPanel(size.m_height, row, hooks, i * size.m_height)) return false;
+        if (count > 1) drawLabel(panel.m_title, panel.m_remark, left, size.m_width, image);
     }
-    return writePng(path, image, error);
+    return true;
+}
+
+bool writePicture(const std::string& path, const std::vector<PicturePanel>& panels, const TriangleMesh& obstacle,
+                  const PictureHooks& hooks, std::string& error)
+{
+    Image image(0, 0);
+    const View view = viewOf(shadedCloth(panels.front().m_cloth).m_mesh, obstacle);
+    if (drawPicture(panels, obstacle, view, pictureSize(panels.size()), hooks, image, error))
+        return writePng(path, image, error);
+    if (!error.empty()) error = path + ": " + error;
+    return false;
 }
 }  // namespace drape

@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "scenes/mesh.h"
+#include "tools/cloth_drop/image.h"
+#include "tools/cloth_drop/ray_scene.h"
 
 namespace drape
 {
@@ -27,6 +29,20 @@ struct PictureHooks  // any may be empty
 
 // Returns the number of pixel rows of all panels together.
 int pictureRows(std::size_t panels);
+
+struct PictureSize
+{
+    int m_width, m_height;  // pixels of a panel
+    int m_samples;          // a pixel and axis; each carries one shadow and one sky ray
+};
+
+// Returns the size of a panel in a picture of so many.
+PictureSize pictureSize(std::size_t panels);
+
+// Draws at least one panel; the floor of the view hides cloth that fell deeper. Returns false with one line in `error`
+// on failure, and false without one when the picture was given up.
+bool drawPicture(const std::vector<PicturePanel>& panels, const TriangleMesh& obstacle, const View& view,
+                 const PictureSize& size, const PictureHooks& hooks, Image& image, std::string& error);
 
 // Renders at least one panel and writes a PNG. The first cloth and the obstacle determine the view; the floor below
 // them hides cloth that fell deeper. Returns false with one line in `error` on failure, and false without one when the

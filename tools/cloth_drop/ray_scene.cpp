@@ -29,6 +29,25 @@ RTCRay makeRay(const Vector3& origin, const Vector3& direction, double distance)
     ray.mask = 0xffffffffu;
     return ray;
 }
+
+// Returns the distance from the point with these weights to the triangle's nearest edge that is drawn.
+double distanceToEdge(const ShadedMesh& shaded, unsigned triangle, const double weights[3])
+{
+    const std::int32_t* corner = &shaded.m_mesh.m_triangles[3 * static_cast<std::size_t>(triangle)];
+    Vector3 points[3];
+    for (int i = 0; i < 3; ++i)
+    {
+        const float* p = &shaded.m_mesh.m_positions[3 * static_cast<std::size_t>(corner[i])];
+        points[i] = {p[0], p[1], p[2]};
+    }
+    const double area = length(cross(points[1] - points[0], points[2] - points[0]));
+    double nearest = SurfacePoint().m_edge;
+    for (int i = 0; i < 3; ++i)
+        if ((shaded.m_edges[triangle] >> i & 1) != 0)
+            nearest = std::min(nearest, weights[(i + 2) % 3] * area / length(points[(i + 1) % 3] - points[i]));
+    return nearest;
+}
+
 // Embree 4 dropped the context that version 3 asks for.
 #if RTC_VERSION_MAJOR >= 4
 void intersect(RTCScene scene, RTCRayHit& query)
@@ -135,6 +154,7 @@ SurfacePoint RayScene::trace(const Vector3& origin, const Vector3& direction) co
         const bool flat = shaded.m_creases && dot(smooth, hit.m_flat) < kCreaseCosine;
         hit.m_normal += weights[i] * (flat ? hit.m_flat : smooth);
     }
+    if (!shaded.m_edges.empty()) hit.m_edge = distanceToEdge(shaded, query.hit.primID, weights);
     hit.m_surface = query.hit.geomID == 0 ? Surface::Cloth : Surface::Obstacle;
     hit.m_point = origin + static_cast<double>(query.ray.tfar) * direction;
     hit.m_back = dot(hit.m_flat, direction) > 0;

@@ -31,6 +31,7 @@ struct SurfacePoint
     Vector3 m_normal;     // smooth, towards the ray's origin
     Vector3 m_flat;       // normal of the triangle, towards the ray's origin
     bool m_back = false;  // seen from the triangle's back
+    double m_edge = 1e9;  // m, distance to the nearest edge of ShadedMesh::m_edges of this triangle
 };
 
 // Holds the ball that fills a picture, and the height of the floor, which hides everything below. Metres.

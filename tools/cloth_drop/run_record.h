@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "drape/recording.h"
 #include "tools/cloth_drop/simulation.h"
 #include "tools/cloth_drop/stretch_meter.h"
 #include "oracle/measure.h"
@@ -32,6 +33,7 @@ struct RunRecord
     bool m_countsClothPairs = false;  // see countsClothPairs()
     std::vector<StepRecord> m_steps;
     std::vector<float> m_lastPositions;  // x y z per cloth node after the last step; a child's only where asked for
+    Recording m_recording;               // empty unless asked for
     bool m_capped = false;               // something ended the run before its last step: those done are there
     std::string m_trouble;               // one line, or empty
 };

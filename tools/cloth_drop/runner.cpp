@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "drape/recorder.h"
 #include "oracle/crossings.h"
 #include "oracle/self_intersections.h"
 #include "scenes/mesh_writer.h"
@@ -21,6 +22,35 @@ RunRecord startRecord(const Simulation& simulation, const DropScene& scene, cons
     record.m_countsClothPairs = countsClothPairs(scene);
     return record;
 }
+
+// Records the start and every step, if that is asked for.
+class RunRecorder
+{
+public:
+    RunRecorder(Simulation& simulation, const DropScene& scene, const RunHooks& hooks)
+        : m_simulation(simulation), m_hooks(hooks)
+    {
+        RecorderSettings settings;
+        settings.m_frameTime = scene.m_dt;
+        if (hooks.m_records) m_recorder = std::make_unique<Recorder>(simulation.world(), settings);
+        record();
+    }
+
+    void record()
+    {
+        if (!m_recorder) return;
+        m_recorder->record();
+        m_simulation.addContacts(*m_recorder);
+        if (m_hooks.m_recorded) m_hooks.m_recorded(m_recorder->recording());
+    }
+
+    Recording take() { return m_recorder ? std::move(m_recorder->recording()) : Recording(); }
+
+private:
+    Simulation& m_simulation;
+    const RunHooks& m_hooks;
+    std::unique_ptr<Recorder> m_recorder;
+};
 }  // namespace
 
 bool runSimulation(Simulation& simulation, const DropScene& scene, int steps, const std::string& framesFolder,
@@ -34,6 +64,7 @@ bool runSimulation(Simulation& simulation, const DropScene& scene, int steps, co
     SelfIntersections self(sheets);
     const StretchMeter stretch(sheets);
     std::uint64_t hash = kHashStart;
+    RunRecorder recorder(simulation, scene, hooks);
     const bool frames = !framesFolder.empty();
     if (frames && !(writeMesh(framesFolder + "/obstacle.ply", scene.m_obstacle, error) &&
                     writeMesh(frameName(framesFolder, "cloth", 0), lastFrame, error)))
@@ -53,6 +84,7 @@ bool runSimulation(Simulation& simulation, const DropScene& scene, int steps, co
         crossings.follow(positions);
         step.m_nodesThrough = crossings.nodes();
         step.m_hash = hash = hashFloats(hash, lastFrame.m_positions);
+        recorder.record();
         if (hooks.m_afterStep) hooks.m_afterStep(number, step);
         record.m_steps.push_back(std::move(step));
         const bool written = !frames || writeMesh(frameName(framesFolder, "cloth", number), lastFrame, error);
@@ -67,6 +99,7 @@ bool runSimulation(Simulation& simulation, const DropScene& scene, int steps, co
     record.m_deviceReason = simulation.deviceReason();
     record.m_trouble = simulation.trouble();
     record.m_lastPositions = std::move(lastFrame.m_positions);
+    record.m_recording = recorder.take();
     return error.empty();
 }
 }  // namespace drape

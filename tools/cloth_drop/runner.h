@@ -14,6 +14,8 @@ struct RunHooks  // any may be empty
     std::function<void(int)> m_beforeStep;                    // step from 1
     std::function<void(int)> m_stepped;                       // stepped, not measured yet
     std::function<void(int, const StepRecord&)> m_afterStep;  // measured too
+    std::function<void(const Recording&)> m_recorded;         // with m_records: a frame more, before m_afterStep
+    bool m_records = false;                                   // keeps the run's frames in RunRecord::m_recording
 };
 
 // Runs the simulation. A run that is stopped is capped at its last step. Returns false, with one line in `error`, if a

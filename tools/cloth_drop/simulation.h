@@ -12,8 +12,12 @@
 #include "tools/cloth_drop/options.h"
 #include "tools/cloth_drop/step_parts.h"
 
+class btCollisionWorld;
+
 namespace drape
 {
+class Recorder;
+
 struct StepTimes
 {
     double m_stepMs = 0;       // wall time of stepSimulation
@@ -39,6 +43,11 @@ public:
 
     // Returns x y z per cloth node, m; valid until the next step.
     virtual const std::vector<float>& positions() = 0;
+
+    // Returns the world, for a recorder.
+    virtual const btCollisionWorld& world() = 0;
+    // Tells a recorder the contacts of the last step that are not in Bullet's own lists.
+    virtual void addContacts(Recorder&) const {}
 
     // Returns text for the report, as of the last step; an empty string if there is no device.
     virtual std::string backend() const = 0;

@@ -27,6 +27,16 @@ void roundMiddles(const TriangleMesh& coarse, TriangleMesh& fine, std::vector<Ve
             normals[index] = normalized(na + nb);
         }
 }
+
+// Each of the first three parts that subdivide() makes of a triangle has two halves of its edges, the fourth none.
+std::vector<std::uint8_t> edgesOfParts(const std::vector<std::uint8_t>& edges)
+{
+    std::vector<std::uint8_t> parts;
+    for (const unsigned mask : edges)
+        for (const unsigned halves : {5u, 3u, 6u, 0u})
+            parts.push_back(static_cast<std::uint8_t>(mask & halves));
+    return parts;
+}
 }  // namespace
 
 std::vector<Vector3> vertexNormals(const TriangleMesh& mesh)
@@ -45,14 +55,16 @@ std::vector<Vector3> vertexNormals(const TriangleMesh& mesh)
     return normals;
 }
 
-ShadedMesh smoothMesh(const TriangleMesh& mesh, int levels)
+ShadedMesh smoothMesh(const TriangleMesh& mesh, int levels, bool edges)
 {
-    ShadedMesh smooth{mesh, vertexNormals(mesh)};
+    ShadedMesh smooth{mesh, vertexNormals(mesh), {}};
+    if (edges) smooth.m_edges.assign(mesh.triangleCount(), 7);
     for (int level = 0; level < levels; ++level)
     {
         TriangleMesh fine = subdivide(smooth.m_mesh);
         roundMiddles(smooth.m_mesh, fine, smooth.m_normals);
         smooth.m_mesh = std::move(fine);
+        smooth.m_edges = edgesOfParts(smooth.m_edges);
     }
     return smooth;
 }

@@ -6,6 +6,7 @@
 // simulated one by parts of the edge length.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "scenes/mesh.h"
@@ -20,8 +21,12 @@ struct ShadedMesh
 {
     TriangleMesh m_mesh;
     std::vector<Vector3> m_normals;  // a vertex, unit
-    bool m_creases = false;          // corners whose normal leans far from the triangle's are to be drawn flat
+    // A triangle: bit i is set if its edge from corner i to the next is part of an edge of the mesh before smoothing.
+    // Empty: edges are not drawn.
+    std::vector<std::uint8_t> m_edges;
+    bool m_creases = false;  // corners whose normal leans far from the triangle's are to be drawn flat
 };
 
-ShadedMesh smoothMesh(const TriangleMesh& mesh, int levels);
+// `edges` says whether the edges of `mesh` are to be drawn.
+ShadedMesh smoothMesh(const TriangleMesh& mesh, int levels, bool edges);
 }  // namespace drape

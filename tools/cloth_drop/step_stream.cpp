@@ -8,6 +8,7 @@
 
 #include "tools/cloth_drop/capped_lines.h"
 #include "tools/cloth_drop/options.h"
+#include "tools/cloth_drop/recording_stream.h"
 #include "tools/cloth_drop/runner.h"
 
 namespace drape
@@ -41,20 +42,28 @@ double numberOf(const Json& value)
 
 StepRecord stepFromLine(const std::string& text)
 {
-    std::vector<float> positions;
-    return stepFromLine(text, positions);
+    RunRecord record;
+    return stepFromLine(text, record);
 }
 
-StepRecord stepFromLine(const std::string& text, std::vector<float>& positions)
+void startFromLine(const std::string& text, Recording& recording)
+{
+    const Json line = Json::parse(text);
+    takeBodies(line.at("bodies"), recording);
+    takeFrame(line.at("frame"), recording);
+}
+
+StepRecord stepFromLine(const std::string& text, RunRecord& record)
 {
     const Json line = Json::parse(text);
     const auto given = line.find("positions");
     if (given != line.end())
     {
-        positions.clear();
+        record.m_lastPositions.clear();
         for (const Json& coordinate : *given)
-            positions.push_back(static_cast<float>(numberOf(coordinate)));
+            record.m_lastPositions.push_back(static_cast<float>(numberOf(coordinate)));
     }
+    if (line.contains("frame")) takeFrame(line.at("frame"), record.m_recording);
     StepRecord step;
     step.m_times.m_stepMs = line.at("times").at(0);
     step.m_times.m_collisionMs = line.at("times").at(1);
@@ -73,7 +82,7 @@ StepRecord stepFromLine(const std::string& text, std::vector<float>& positions)
 }
 
 void streamRun(Simulation& simulation, const DropScene& scene, int steps, const std::function<std::string()>& lastLine,
-               bool positions)
+               bool positions, bool frames)
 {
     RunHooks hooks;
     bool good = true;
@@ -84,11 +93,19 @@ void streamRun(Simulation& simulation, const DropScene& scene, int steps, const 
     };
     hooks.m_beforeStep = [&](int) { send(stepLine()); };
     hooks.m_stepped = [&](int) { send(steppedLine()); };
+    Json frame;
+    hooks.m_records = frames;
+    hooks.m_recorded = [&](const Recording& recording)
+    {
+        frame = asFrame(recording);
+        if (recording.m_frameCount == 1) send(Json{{"bodies", asBodies(recording)}, {"frame", frame}}.dump());
+    };
     hooks.m_afterStep = [&](int, const StepRecord& step)
     {
         send(measuredLine());
         Json line = asLine(step);
         if (positions) line["positions"] = simulation.positions();
+        if (frames) line["frame"] = std::move(frame);
         send(line.dump());
     };
     RunRecord record;
