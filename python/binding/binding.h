@@ -39,6 +39,20 @@ class DeviceFailure : public std::runtime_error
 // Returns the name of a field in Python: "clothsKept" and "m_clothsKept" become "cloths_kept".
 std::string pythonName(const std::string& field);
 
+// Returns an entry as that type. Throws TypeError, which names the entry, if it has another type or is out of range.
+template <class Value>
+Value valueOf(const py::dict& values, const std::string& name)
+{
+    try
+    {
+        return values[name.c_str()].template cast<Value>();
+    }
+    catch (const py::cast_error&)
+    {
+        throw py::type_error(name + " has the wrong type or is out of range");
+    }
+}
+
 Settings settingsOf(const py::dict& settings);
 py::dict dictOf(const DeviceReport& report);
 py::dict dictOf(const StepStatistics& statistics);

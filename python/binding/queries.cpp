@@ -102,10 +102,10 @@ public:
     {
         static_assert(fieldCount<CcdSettings>() == 4, "each field is read below and given in defaultCcd()");
         CcdSettings own = {};
-        own.m_separation = settings["separation"].cast<float>();
-        own.m_tolerance = settings["tolerance"].cast<float>();
-        own.m_timeTolerance = settings["time_tolerance"].cast<float>();
-        own.m_boxLimit = settings["box_limit"].cast<unsigned>();
+        own.m_separation = valueOf<float>(settings, "separation");
+        own.m_tolerance = valueOf<float>(settings, "tolerance");
+        own.m_timeTolerance = valueOf<float>(settings, "time_tolerance");
+        own.m_boxLimit = valueOf<unsigned>(settings, "box_limit");
         return own;
     }
 

@@ -23,18 +23,10 @@ py::object objectOf(const Field& field)
 template <class Field>
 void readField(const py::dict& settings, const char* field, Field& to)
 {
-    const std::string name = pythonName(field);
-    try
-    {
-        if constexpr (std::is_enum_v<Field>)
-            to = Field(settings[name.c_str()].template cast<int>());
-        else
-            to = settings[name.c_str()].template cast<Field>();
-    }
-    catch (const py::cast_error&)
-    {
-        throw py::type_error("Settings." + name + " has the wrong type or is out of range");
-    }
+    if constexpr (std::is_enum_v<Field>)
+        to = Field(valueOf<int>(settings, pythonName(field)));
+    else
+        to = valueOf<Field>(settings, pythonName(field));
 }
 
 // Calls the app's function with the GIL. An exception from it is printed and dropped.

@@ -49,13 +49,14 @@ py::dict obstacleDefaults()
 ClothDescription clothOf(const py::dict& options)
 {
     ClothDescription cloth = defaultCloth();
-    cloth.m_thickness = options["thickness"].cast<double>();
-    cloth.m_stiffness = options["stiffness"].cast<double>();
-    cloth.m_bendingStiffness = options["bending_stiffness"].cast<double>();
-    cloth.m_friction = options["friction"].cast<double>();
-    cloth.m_damping = options["damping"].cast<double>();
-    cloth.m_iterations = options["iterations"].cast<int>();
-    cloth.m_selfCollision = options["self_collision"].cast<bool>();
+    cloth.m_mass = valueOf<double>(options, "mass");
+    cloth.m_thickness = valueOf<double>(options, "thickness");
+    cloth.m_stiffness = valueOf<double>(options, "stiffness");
+    cloth.m_bendingStiffness = valueOf<double>(options, "bending_stiffness");
+    cloth.m_friction = valueOf<double>(options, "friction");
+    cloth.m_damping = valueOf<double>(options, "damping");
+    cloth.m_iterations = valueOf<int>(options, "iterations");
+    cloth.m_selfCollision = valueOf<bool>(options, "self_collision");
     return cloth;
 }
 
@@ -78,9 +79,8 @@ public:
         work([&] { return m_world->setGravity(gravity.data()); });
     }
 
-    // masses: one for the whole cloth, or one per node.
     int addCloth(const Floats& positions, const Indices& triangles, const Indices& edges, const Floats& rest,
-                 const Indices& pins, const Floats& masses, double mass, const py::dict& options)
+                 const Indices& pins, const Floats& masses, const py::dict& options)
     {
         ClothDescription cloth = clothOf(options);
         cloth.m_positions = dataOf(positions);
@@ -93,21 +93,20 @@ public:
         cloth.m_pins = dataOf(pins);
         cloth.m_pinCount = std::size_t(pins.size());
         cloth.m_masses = dataOf(masses);
-        cloth.m_mass = mass;
         return add([&] { return m_world->addCloth(cloth); });
     }
 
-    int addObstacle(const Floats& positions, const Indices& triangles, double margin, double friction, bool oneSided,
-                    const Vector& position, const Rotation& rotation)
+    int addObstacle(const Floats& positions, const Indices& triangles, const py::dict& options, const Vector& position,
+                    const Rotation& rotation)
     {
         ObstacleDescription obstacle = defaultObstacle();
         obstacle.m_positions = dataOf(positions);
         obstacle.m_vertexCount = std::size_t(positions.size()) / 3;
         obstacle.m_triangles = dataOf(triangles);
         obstacle.m_triangleCount = std::size_t(triangles.size()) / 3;
-        obstacle.m_margin = margin;
-        obstacle.m_friction = friction;
-        obstacle.m_oneSided = oneSided;
+        obstacle.m_margin = valueOf<double>(options, "margin");
+        obstacle.m_friction = valueOf<double>(options, "friction");
+        obstacle.m_oneSided = valueOf<bool>(options, "one_sided");
         std::copy(position.begin(), position.end(), obstacle.m_position);
         std::copy(rotation.begin(), rotation.end(), obstacle.m_rotation);
         return add([&] { return m_world->addObstacle(obstacle); });

@@ -15,7 +15,7 @@ def log_to_standard_error(line: str) -> None:
 
 @dataclasses.dataclass
 class Settings:
-    """Where Drape computes, how it looks at motion, and its limits. docs/settings.md says what to change, and why.
+    """Choices before Drape starts. docs/settings.md says what to change, and why.
 
     backend: "auto", "opencl" or "host".
     device: part of an OpenCL device's or platform's name, or "host"; "" means the environment variable DRAPE_DEVICE.

@@ -49,11 +49,12 @@ class ClothWorld:
         rest = nodes if rest_positions is None else floats(rest_positions, nodes.shape, "rest_positions")
         single = numpy.ndim(mass) == 0
         masses = floats(() if single else mass, (0 if single else len(nodes),), "mass")
-        options = dict(thickness=thickness, stiffness=stiffness, bending_stiffness=bending_stiffness,
-                       friction=friction, damping=damping, iterations=iterations, self_collision=self_collision)
+        options = dict(mass=mass if single else 1.0, thickness=thickness, stiffness=stiffness,
+                       bending_stiffness=bending_stiffness, friction=friction, damping=damping, iterations=iterations,
+                       self_collision=self_collision)
         return self._own.add_cloth(nodes, indices(triangles, (None, 3), "triangles"),
                                    indices(edges, (None, 2), "edges"), rest, indices(pins, (None,), "pins"), masses,
-                                   mass if single else 1.0, options)
+                                   options)
 
     def add_mesh(self, vertices: Floats, triangles: Indices, *, margin: float = 0.01, friction: float = 1.0,
                  one_sided: bool = False, position: Sequence[float] = (0.0, 0.0, 0.0),
@@ -65,8 +66,9 @@ class ClothWorld:
         one_sided: only the front is solid, from which triangles run counter-clockwise. position: of the frame, m.
         rotation: of the frame, a quaternion x y z w.
         """
+        options = dict(margin=margin, friction=friction, one_sided=one_sided)
         return self._own.add_obstacle(floats(vertices, (None, 3), "vertices"),
-                                      indices(triangles, (None, 3), "triangles"), margin, friction, one_sided,
+                                      indices(triangles, (None, 3), "triangles"), options,
                                       numbers(position, 3, "position"), numbers(rotation, 4, "rotation"))
 
     def remove_cloth(self, cloth: int) -> None:
@@ -140,16 +142,21 @@ class ClothWorld:
     def contacts(self) -> numpy.ndarray:
         """Returns the contacts of the last step between cloth and obstacles, as records.
 
-        Fields: cloth and obstacle, indices; nodes (3), of the cloth's feature, -1 if unused; weights (3) of these nodes
-        with the sum 1; normal (3), unit, from the obstacle to the cloth; point (3) on the obstacle, m; gap, distance at
-        the step's predicted end without the thickness, m; thickness, distance at which the two rest, m.
+        cloth, obstacle: their indices.
+        nodes (3): nodes of the cloth's feature, -1 if unused.
+        weights (3): weights of these nodes, with the sum 1.
+        normal (3): unit vector from the obstacle to the cloth.
+        point (3): point on the obstacle, m.
+        gap: distance at the step's predicted end, thickness subtracted, m.
+        thickness: distance at which the two rest, m.
         """
         return self._own.contacts()
 
     def cloth_triangles(self) -> numpy.ndarray:
         """Returns triangles of cloth with self collision that intersected where the last step began, as records.
 
-        Fields: cloths (2), the cloth of each triangle; nodes (2, 3), the nodes of each triangle.
+        cloths (2): the cloth of each triangle.
+        nodes (2, 3): the nodes of each triangle.
         """
         return self._own.cloth_triangles()
 
