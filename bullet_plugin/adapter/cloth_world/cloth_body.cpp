@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
+#include "bullet_plugin/adapter/cloth_cloth/self_collision.h"
 #include "bullet_plugin/adapter/cloth_world/input_checks.h"
 #include "bullet_plugin/core/scene/check_indices.h"
 #include "bullet_plugin/core/scene/topology.h"
-#include "drape/plugin.h"
 
 namespace drape
 {
@@ -76,7 +76,7 @@ void requireCloth(const ClothDescription& cloth)
     requireNumber(cloth.m_selfCollision, 0, 1, "selfCollision should be 0 or 1");
 }
 
-WorldCloth makeCloth(const ClothDescription& cloth, btSoftBodyWorldInfo& info, Plugin& plugin)
+WorldCloth makeCloth(const ClothDescription& cloth, btSoftBodyWorldInfo& info, SelfCollision& selfCollision)
 {
     const std::size_t count = cloth.m_vertexCount;
     const float* const rest = cloth.m_restPositions ? cloth.m_restPositions : cloth.m_positions;
@@ -101,8 +101,8 @@ WorldCloth makeCloth(const ClothDescription& cloth, btSoftBodyWorldInfo& info, P
     // Lengths and areas are those at rest. Bullet would derive them anew, from the start, in the first step.
     body.updateConstants();
     body.m_bUpdateRtCst = false;
-    // The plugin remembers the positions at rest.
-    if (cloth.m_selfCollision) plugin.setSelfCollision(body, true);
+    // It remembers the positions at rest. A thickness of 0 stands for twice the margin.
+    if (cloth.m_selfCollision) selfCollision.set(body, 0);
     for (std::size_t i = 0; i < count && cloth.m_restPositions; ++i)
         body.m_nodes[int(i)].m_x = body.m_nodes[int(i)].m_q = positionAt(cloth.m_positions, i);
     body.updateNormals();

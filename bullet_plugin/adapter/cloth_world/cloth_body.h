@@ -9,7 +9,7 @@
 
 namespace drape
 {
-class Plugin;
+class SelfCollision;
 
 // A cloth of a world. Views of its nodes may keep the body when the world has let it go.
 struct WorldCloth
@@ -21,7 +21,7 @@ struct WorldCloth
 // Throws InvalidInput if a number is out of its range, an array is missing or an index is out of range.
 void requireCloth(const ClothDescription& cloth);
 
-// Makes the body at its start, in no world. Tells the plugin if it collides with itself. The description has been
-// checked.
-WorldCloth makeCloth(const ClothDescription& cloth, btSoftBodyWorldInfo& info, Plugin& plugin);
+// Makes the body at its start, in no world. Adds it to `selfCollision` if it collides with itself. The description has
+// been checked.
+WorldCloth makeCloth(const ClothDescription& cloth, btSoftBodyWorldInfo& info, SelfCollision& selfCollision);
 }  // namespace drape

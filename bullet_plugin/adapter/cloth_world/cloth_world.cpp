@@ -1,7 +1,7 @@
 #include "drape/cloth_world.h"
 
 #include "bullet_plugin/adapter/cloth_world/cloth_world_implementation.h"
-#include "bullet_plugin/adapter/wiring/plugin_state.h"
+#include "bullet_plugin/adapter/wiring/wiring.h"
 #include "bullet_plugin/core/check_settings.h"
 
 namespace drape
@@ -41,7 +41,7 @@ int ClothWorld::Implementation::addCloth(const ClothDescription& description)
 {
     requireCloth(description);
     m_cloths.reserve(m_cloths.size() + 1);
-    WorldCloth made = makeCloth(description, m_world.getWorldInfo(), m_plugin);
+    WorldCloth made = makeCloth(description, m_world.getWorldInfo(), state().m_selfCollision);
     const int index = int(m_cloths.size());
     made.m_body->setUserIndex(index);
     m_world.addSoftBody(made.m_body.get());
@@ -117,13 +117,16 @@ std::unique_ptr<ClothWorld> ClothWorld::create(const Settings& settings, Error& 
             if (!checkSettings(settings, error)) return std::unique_ptr<ClothWorld>();
             std::unique_ptr<ClothWorld> world(new ClothWorld());
             world->m_implementation.reset(new Implementation(settings));
-            const PluginState* const state = world->plugin().state().get();
+            Implementation& made = *world->m_implementation;
+            PluginState* const state = made.m_plugin.state().get();
             if (!state) throw std::bad_alloc();
             if (!state->ready())
             {
                 error = state->error();
                 return std::unique_ptr<ClothWorld>();
             }
+            // The solver and the configuration act as Bullet's own if they found no memory.
+            if (!state->ownsSolver(&made.m_solver) || pluginOf(made.m_dispatcher) != state) throw std::bad_alloc();
             const double gravity[3] = {0, -9.81, 0};
             world->setGravity(gravity);
             return world;

@@ -11,6 +11,7 @@
 #include "bullet_plugin/adapter/cloth_world/cloth_body.h"
 #include "bullet_plugin/adapter/cloth_world/input_checks.h"
 #include "bullet_plugin/adapter/cloth_world/obstacle_body.h"
+#include "bullet_plugin/adapter/wiring/plugin_state.h"
 #include "bullet_plugin/core/public_call.h"
 #include "drape/cloth_world.h"
 #include "drape/collision_configuration.h"
@@ -51,6 +52,8 @@ struct ClothWorld::Implementation
             });
     }
 
+    // Its functions throw if memory runs out; those of the plugin would give an empty answer.
+    PluginState& state() { return *m_plugin.state(); }
     WorldCloth& cloth(int index);
     ObstacleBody& obstacle(int index);
     int addCloth(const ClothDescription& description);

@@ -117,7 +117,8 @@ bool ClothWorld::contacts(std::vector<ClothContact>& found) const
     return m_implementation->answer("contacts", false,
                                     [&]
                                     {
-                                        const std::vector<ContactInfo> contacts = m_implementation->m_plugin.contacts();
+                                        const std::vector<ContactInfo> contacts =
+                                            m_implementation->state().m_found.list();
                                         found.clear();
                                         found.reserve(contacts.size());
                                         for (const ContactInfo& contact : contacts)
@@ -146,7 +147,7 @@ bool ClothWorld::clothTriangles(std::vector<ClothTriangles>& found) const
                                     [&]
                                     {
                                         found.clear();
-                                        for (const ClothPairInfo& pair : m_implementation->m_plugin.clothPairs())
+                                        for (const ClothPairInfo& pair : m_implementation->state().m_clothPairs)
                                         {
                                             ClothTriangles own = {};
                                             for (int side = 0; side < 2; ++side)
