@@ -35,7 +35,20 @@ def host():
 
 
 @pytest.fixture(scope="session")
-def sheet():
+def make_sheet():
+    """Returns a function that makes a square of nodes x nodes, facing up."""
+    def make(nodes, size, height):
+        along = numpy.linspace(-size / 2, size / 2, nodes, dtype=numpy.float32)
+        x, z = numpy.meshgrid(along, along)
+        positions = numpy.stack([x.ravel(), numpy.full(nodes * nodes, height, numpy.float32), z.ravel()], 1)
+        corner = (numpy.arange(nodes - 1)[:, None] * nodes + numpy.arange(nodes - 1)).ravel()
+        quads = numpy.stack([corner, corner + nodes, corner + 1, corner + 1, corner + nodes, corner + nodes + 1], 1)
+        return drape.Mesh(positions, quads.reshape(-1, 3).astype(numpy.int32))
+    return make
+
+
+@pytest.fixture(scope="session")
+def sheet(make_sheet):
     return make_sheet(9, 0.8, 0.3)
 
 
@@ -43,13 +56,3 @@ def sheet():
 def plate():
     return drape.Mesh(numpy.array([[-3, 0, -3], [3, 0, -3], [3, 0, 3], [-3, 0, 3]], numpy.float32),
                       numpy.array([[0, 2, 1], [0, 3, 2]], numpy.int32))
-
-
-def make_sheet(nodes, size, height):
-    """Returns a square of nodes x nodes, facing up."""
-    along = numpy.linspace(-size / 2, size / 2, nodes, dtype=numpy.float32)
-    x, z = numpy.meshgrid(along, along)
-    positions = numpy.stack([x.ravel(), numpy.full(nodes * nodes, height, numpy.float32), z.ravel()], 1)
-    corner = (numpy.arange(nodes - 1)[:, None] * nodes + numpy.arange(nodes - 1)).ravel()
-    quads = numpy.stack([corner, corner + nodes, corner + 1, corner + 1, corner + nodes, corner + nodes + 1], 1)
-    return drape.Mesh(positions, quads.reshape(-1, 3).astype(numpy.int32))

@@ -1,5 +1,6 @@
 """Queries: the bits of the C++ interface, and errors that name the argument."""
 import threading
+import time
 
 import numpy
 import pytest
@@ -124,3 +125,22 @@ def test_threads_share_queries(queries, reference):
     for thread in threads:
         thread.join()
     assert same == [True] * 40
+
+
+def test_other_threads_run_during_a_query(queries, make_sheet):
+    mesh = make_sheet(60, 1, 0)
+    called = []
+
+    def ask():
+        called.append(time.perf_counter())
+        queries.mesh_pairs(mesh, radius=0.05)
+        called.append(time.perf_counter())
+
+    thread = threading.Thread(target=ask)
+    ticks = []
+    thread.start()
+    while thread.is_alive():
+        ticks.append(time.perf_counter())
+        time.sleep(0.001)
+    thread.join()
+    assert sum(called[0] < tick < called[1] for tick in ticks) > 3
