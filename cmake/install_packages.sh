@@ -22,7 +22,7 @@ further=(
   # benchmarks: peers, plots
   libfcl-dev libtbb-dev python3-matplotlib
   # the Python module and its tests
-  python3-dev pybind11-dev python3-numpy python3-pytest
+  python3-dev pybind11-dev python3-numpy python3-pytest mypy
   # tests; a simulated GPU; fuzzing; the format of C++ and OpenCL C
   libgtest-dev oclgrind clang libclang-rt-dev clang-format
   # published data: unpacking

@@ -3,7 +3,8 @@
 # It builds once as a CMake package and once using pkg-config. It also compiles and runs every block of C++ and C in
 # README.md and docs/*.md using pkg-config.
 # Input: BUILD (Drape's build folder), SOURCE (the consumer), DOCUMENTS (the folder of README.md and docs/), WORK (made
-# anew), LIBDIR, COMPILER and C_COMPILER, SANITIZE, DOUBLE (the precision of Bullet that Drape is built for).
+# anew), LIBDIR, COMPILER and C_COMPILER, SANITIZE, DOUBLE (the precision of Bullet that Drape is built for), and with
+# the Python module PYTHON and PYTHON_DIR.
 cmake_minimum_required(VERSION 3.25)
 function(must)
   execute_process(COMMAND ${ARGV} COMMAND_ECHO STDOUT COMMAND_ERROR_IS_FATAL ANY)
@@ -29,6 +30,12 @@ separate_arguments(package_flags UNIX_COMMAND "${package_flags}")
 must(${COMPILER} -std=c++11 ${flags} ${SOURCE}/main.cpp -o ${WORK}/consumer_by_pkg_config ${package_flags}
   -Wl,-rpath,${prefix}/${LIBDIR})
 must(${WORK}/consumer_by_pkg_config)
+
+# The Python package, where it was built.
+if(PYTHON)
+  must(${CMAKE_COMMAND} -E env PYTHONPATH=${prefix}/${PYTHON_DIR} ${PYTHON} -B -c
+    "import drape; drape.ClothWorld(drape.Settings(backend='host')).step(); print(drape.__file__)")
+endif()
 
 # An app in the other precision: told by the compiler where it has the package's flags, else by the linker.
 set(other -DBT_USE_DOUBLE_PRECISION)

@@ -1,12 +1,14 @@
 """Checks of the arrays that a caller passes."""
 from __future__ import annotations
 
-from typing import Any, Optional, Sequence, Union
+from typing import Any, List, Optional, Sequence, Union
 
 import numpy
 import numpy.typing
 
-# Arrays of float32 and int32, or sequences of numbers that become such arrays.
+#: An array that Drape returns; each function says of which type and shape.
+Array = numpy.typing.NDArray[Any]
+#: Arrays of float32 or int32, or sequences of numbers that become such arrays.
 Floats = Union[numpy.typing.NDArray[numpy.float32], Sequence[Any]]
 Indices = Union[numpy.typing.NDArray[numpy.int32], Sequence[Any]]
 
@@ -17,7 +19,7 @@ def shape_text(shape: Sequence[Optional[int]]) -> str:
     return "(" + ", ".join(parts) + ("," if len(parts) == 1 else "") + ")"
 
 
-def array_of(values: Any, kinds: str, type_: type, name: str) -> numpy.ndarray:
+def array_of(values: Any, kinds: str, type_: type, name: str) -> Array:
     """Returns the values as an array of that type. Refuses arrays of other types, and numbers of other kinds."""
     if isinstance(values, numpy.ndarray):
         if values.dtype != type_:
@@ -35,7 +37,7 @@ def array_of(values: Any, kinds: str, type_: type, name: str) -> numpy.ndarray:
     return given.astype(type_)
 
 
-def checked(array: numpy.ndarray, shape: Sequence[Optional[int]], name: str) -> numpy.ndarray:
+def checked(array: Array, shape: Sequence[Optional[int]], name: str) -> Array:
     """Returns the array in C order. Refuses other shapes; None in a shape stands for any length."""
     if array.size == 0 and shape[0] in (None, 0):
         array = array.reshape([0] + [length or 0 for length in shape[1:]])
@@ -44,17 +46,17 @@ def checked(array: numpy.ndarray, shape: Sequence[Optional[int]], name: str) -> 
     return numpy.ascontiguousarray(array)
 
 
-def floats(values: Floats, shape: Sequence[Optional[int]], name: str) -> numpy.ndarray:
+def floats(values: Floats, shape: Sequence[Optional[int]], name: str) -> Array:
     """Returns a float32 array of that shape."""
     return checked(array_of(values, "fiu", numpy.float32, name), shape, name)
 
 
-def indices(values: Indices, shape: Sequence[Optional[int]], name: str) -> numpy.ndarray:
+def indices(values: Indices, shape: Sequence[Optional[int]], name: str) -> Array:
     """Returns an int32 array of that shape."""
     return checked(array_of(values, "iu", numpy.int32, name), shape, name)
 
 
-def numbers(values: Sequence[float], count: int, name: str) -> list:
+def numbers(values: Sequence[float], count: int, name: str) -> List[float]:
     """Returns so many Python floats, of a sequence or an array of any type."""
     found = [float(value) for value in values]
     if len(found) != count:

@@ -3,18 +3,23 @@ from __future__ import annotations
 
 import dataclasses
 import enum
-from typing import Any, Dict, NamedTuple, Optional, Union
+from typing import Any, Dict, NamedTuple, Optional, Tuple, Union, cast
 
 import numpy
 
 from . import _drape
-from .arrays import Floats, Indices, floats, indices
+from .arrays import Array, Floats, Indices, floats, indices
 from .settings import Settings
 
 #: Kind of a pair of features: a vertex and a face.
 VERTEX_FACE = 0
 #: Kind of a pair of features: two edges.
 EDGES = 1
+
+
+def _default(name: str) -> Any:
+    """Returns the field of CcdSettings whose default is that of C++."""
+    return dataclasses.field(default_factory=lambda: _drape.default_ccd_settings()[name])
 
 
 @dataclasses.dataclass
@@ -26,10 +31,10 @@ class CcdSettings:
     time_tolerance: resolution of the time of impact, as a fraction of the step.
     box_limit: number of boxes after which the search ends with the safe answer, a hit.
     """
-    separation: float = dataclasses.field(default_factory=lambda: _drape.default_ccd_settings()["separation"])
-    tolerance: float = dataclasses.field(default_factory=lambda: _drape.default_ccd_settings()["tolerance"])
-    time_tolerance: float = dataclasses.field(default_factory=lambda: _drape.default_ccd_settings()["time_tolerance"])
-    box_limit: int = dataclasses.field(default_factory=lambda: _drape.default_ccd_settings()["box_limit"])
+    separation: float = _default("separation")
+    tolerance: float = _default("tolerance")
+    time_tolerance: float = _default("time_tolerance")
+    box_limit: int = _default("box_limit")
 
 
 class Mesh(NamedTuple):
@@ -48,11 +53,11 @@ class QueryLimits(enum.IntFlag):
 
 class Motions(NamedTuple):
     """Answers of Queries.motions(), one per question."""
-    hit: numpy.ndarray  #: bool (n,), False if the features are proved apart
-    time: numpy.ndarray  #: float32 (n,), fraction of the step, never later than the true time; 1 without a hit
-    u: numpy.ndarray  #: float32 (n,), weight of the face's second corner, or of the first edge's second end
-    v: numpy.ndarray  #: float32 (n,), weight of the face's third corner, or of the second edge's second end
-    boxes: numpy.ndarray  #: uint32 (n,), number of boxes that the search examined
+    hit: Array  #: bool (n,), False if the features are proved apart
+    time: Array  #: float32 (n,), fraction of the step, never later than the true time; 1 without a hit
+    u: Array  #: float32 (n,), weight of the face's second corner, or of the first edge's second end
+    v: Array  #: float32 (n,), weight of the face's third corner, or of the second edge's second end
+    boxes: Array  #: uint32 (n,), number of boxes that the search examined
 
 
 class MeshPairs(NamedTuple):
@@ -61,8 +66,8 @@ class MeshPairs(NamedTuple):
     candidates: int  #: number of pairs whose volumes overlap
     within_count: int  #: number of pairs within the radius
     intersecting_count: int  #: number of pairs that intersect
-    within: numpy.ndarray  #: uint32 (n, 2), triangles within the radius, sorted
-    intersecting: numpy.ndarray  #: uint32 (n, 2), triangles that intersect, sorted
+    within: Array  #: uint32 (n, 2), triangles within the radius, sorted
+    intersecting: Array  #: uint32 (n, 2), triangles that intersect, sorted
 
 
 class MeshMotion(NamedTuple):
@@ -73,10 +78,10 @@ class MeshMotion(NamedTuple):
     edge_candidates: int  #: number of edge-edge pairs whose volumes over the step overlap
     vertex_face_hits: int  #: number of vertex-face pairs that touch
     edge_hits: int  #: number of edge-edge pairs that touch
-    touching: numpy.ndarray  #: records with the fields kind, vertices (4) and time (a fraction of the step)
+    touching: Array  #: records with the fields kind, vertices (4) and time (a fraction of the step)
 
 
-def _mesh(mesh: Mesh, name: str) -> tuple:
+def _mesh(mesh: Mesh, name: str) -> Tuple[Array, Array, Array]:
     """Returns the arrays of a mesh or of a tuple like it, checked."""
     positions, triangles, edges = Mesh(*mesh)
     return (floats(positions, (None, 3), f"{name}.positions"), indices(triangles, (None, 3), f"{name}.triangles"),
@@ -119,14 +124,15 @@ class Queries:
         questions = numpy.zeros(len(first), _drape.MOTION_QUERY)
         questions["start"] = first.reshape(-1, 12)
         questions["end"] = floats(end, first.shape, "end").reshape(-1, 12)
-        kinds = indices(kind, (len(first),), "kind") if numpy.ndim(kind) else numpy.int32(kind)
+        one = numpy.ndim(kind) == 0
+        kinds = indices([kind] if one else cast(Indices, kind), (1 if one else len(first),), "kind")
         if numpy.any((kinds < VERTEX_FACE) | (kinds > EDGES)):
             raise ValueError("kind: VERTEX_FACE or EDGES expected")
         questions["kind"] = kinds
         found = self._own.motions(questions, dataclasses.asdict(settings or CcdSettings()))
         return Motions(found["hit"] != 0, found["time"], found["u"], found["v"], found["boxes"])
 
-    def triangles(self, a: Floats, b: Floats, exact: bool = True) -> numpy.ndarray:
+    def triangles(self, a: Floats, b: Floats, exact: bool = True) -> Array:
         """Tests pairs of triangles and returns bool (n,), True for a pair that intersects.
 
         a, b: float32 (n, 3, 3), the corners, m. exact: False reports a few pairs that nearly touch, too, and is faster.

@@ -1,12 +1,12 @@
 """A world of cloth and triangle meshes."""
 from __future__ import annotations
 
-from typing import Any, Dict, Optional, Sequence, Union
+from typing import Any, Dict, Optional, Sequence, Union, cast
 
 import numpy
 
 from . import _drape
-from .arrays import Floats, Indices, floats, indices, numbers
+from .arrays import Array, Floats, Indices, floats, indices, numbers
 from .settings import Settings, StepStatus
 
 
@@ -48,7 +48,7 @@ class ClothWorld:
         nodes = floats(positions, (None, 3), "positions")
         rest = nodes if rest_positions is None else floats(rest_positions, nodes.shape, "rest_positions")
         single = numpy.ndim(mass) == 0
-        masses = floats(() if single else mass, (0 if single else len(nodes),), "mass")
+        masses = floats((), (0,), "mass") if single else floats(cast(Floats, mass), (len(nodes),), "mass")
         options = dict(mass=mass if single else 1.0, thickness=thickness, stiffness=stiffness,
                        bending_stiffness=bending_stiffness, friction=friction, damping=damping, iterations=iterations,
                        self_collision=self_collision)
@@ -123,7 +123,7 @@ class ClothWorld:
         """
         return StepStatus(self._own.step(dt))
 
-    def positions(self, cloth: int) -> numpy.ndarray:
+    def positions(self, cloth: int) -> Array:
         """Returns the nodes' positions, m: (n, 3), a read-only view of Bullet's own nodes.
 
         Nothing is copied: steps change the view. Take copy() of it to keep a moment. It is float32, or float64 where
@@ -131,15 +131,15 @@ class ClothWorld:
         """
         return self._own.nodes(cloth)[0]
 
-    def velocities(self, cloth: int) -> numpy.ndarray:
+    def velocities(self, cloth: int) -> Array:
         """Returns the nodes' velocities, m/s: (n, 3), a view like positions()."""
         return self._own.nodes(cloth)[1]
 
-    def normals(self, cloth: int) -> numpy.ndarray:
+    def normals(self, cloth: int) -> Array:
         """Returns the nodes' unit normals: (n, 3), a view like positions()."""
         return self._own.nodes(cloth)[2]
 
-    def contacts(self) -> numpy.ndarray:
+    def contacts(self) -> Array:
         """Returns the contacts of the last step between cloth and obstacles, as records.
 
         cloth, obstacle: their indices.
@@ -152,7 +152,7 @@ class ClothWorld:
         """
         return self._own.contacts()
 
-    def cloth_triangles(self) -> numpy.ndarray:
+    def cloth_triangles(self) -> Array:
         """Returns triangles of cloth with self collision that intersected where the last step began, as records.
 
         cloths (2): the cloth of each triangle.
