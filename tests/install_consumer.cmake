@@ -31,6 +31,13 @@ must(${COMPILER} -std=c++11 ${flags} ${SOURCE}/main.cpp -o ${WORK}/consumer_by_p
   -Wl,-rpath,${prefix}/${LIBDIR})
 must(${WORK}/consumer_by_pkg_config)
 
+# Every header compiles as C++11.
+file(GLOB headers RELATIVE ${prefix}/include ${prefix}/include/drape/*.h)
+list(TRANSFORM headers REPLACE "(.+)" "#include <\\1>\n" OUTPUT_VARIABLE lines)
+string(CONCAT lines ${lines})
+file(WRITE ${WORK}/headers.cpp "${lines}")
+must(${COMPILER} -std=c++11 ${flags} ${package_flags} -c ${WORK}/headers.cpp -o ${WORK}/headers.o)
+
 # The Python package, where it was built.
 if(PYTHON)
   must(${CMAKE_COMMAND} -E env PYTHONPATH=${prefix}/${PYTHON_DIR} ${PYTHON} -B -c

@@ -1,4 +1,4 @@
-/* A C99 program that uses all of drape/c_api.h. c_api_test.cpp runs it and checks its results. */
+// A C99 program that uses all of drape/c_api.h. c_api_test.cpp runs it and checks its results.
 #include "tests/cloth_world/flat_program.h"
 
 #include <math.h>
@@ -32,7 +32,7 @@ static const char* askQueries(DrapeQueries* queries)
     CHECK(pairs.m_limits == DRAPE_QUERY_WHOLE && pairs.m_withinListed == 1 && pairs.m_intersectingListed == 1);
     CHECK(pairs.m_intersecting[0].m_a == 0 && pairs.m_intersecting[0].m_b == 0);
 
-    /* Two triangles of one mesh: the second goes through the first. */
+    // Two triangles of one mesh: the second goes through the first.
     float both[18], end[18];
     const int32_t triangles[] = {0, 1, 2, 3, 4, 5};
     memcpy(both, kGround, sizeof(kGround));

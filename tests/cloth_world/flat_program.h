@@ -1,4 +1,4 @@
-/* A C99 program that uses the C interface; see flat_program.c. */
+// A C99 program that uses the C interface; see flat_program.c.
 #ifndef DRAPE_TEST_FLAT_PROGRAM_H
 #define DRAPE_TEST_FLAT_PROGRAM_H
 
@@ -7,7 +7,7 @@
 #ifdef __cplusplus
 extern "C"
 #endif
-    /* Returns null if all results are as expected, else the condition that does not hold. */
+    // Returns null if all results are as expected, else the condition that does not hold.
     const char*
     runFlatProgram(void);
 
