@@ -1,5 +1,5 @@
 # Finds what the chosen parts need and says what is missing by its Debian name. Sets DRAPE_WITH_BULLET,
-# DRAPE_WITH_BENCHMARKS, DRAPE_WITH_TESTS and DRAPE_WITH_STUDY (ON or OFF).
+# DRAPE_WITH_BENCHMARKS, DRAPE_WITH_TESTS, DRAPE_WITH_PYTHON and DRAPE_WITH_STUDY (ON or OFF).
 set(THREADS_PREFER_PTHREAD_FLAG ON)
 find_package(Threads REQUIRED)
 find_package(OpenCL MODULE)
@@ -75,6 +75,38 @@ if(DRAPE_TESTS)
     message(STATUS "Without tests: they need libgtest-dev oclgrind")
   else()
     message(FATAL_ERROR "Tests need libgtest-dev oclgrind")
+  endif()
+endif()
+
+# The Python module, for the interpreter that Python_EXECUTABLE names, by default that of an active virtual environment
+# or Debian's: NumPy from a package is seen by no other. A sanitized module could be loaded by a sanitized interpreter
+# alone.
+set(DRAPE_WITH_PYTHON OFF)
+if(DRAPE_PYTHON AND (DRAPE_WITH_BULLET OR NOT DRAPE_PYTHON STREQUAL "AUTO"))
+  if(NOT DEFINED Python_EXECUTABLE AND NOT DEFINED ENV{VIRTUAL_ENV} AND EXISTS /usr/bin/python3)
+    set(Python_EXECUTABLE /usr/bin/python3)
+  endif()
+  find_package(Python 3.8 QUIET COMPONENTS Interpreter Development.Module)
+  set(PYBIND11_FINDPYTHON ON)
+  find_package(pybind11 2.10 CONFIG QUIET)
+  set(numpy_missing TRUE)
+  if(Python_FOUND)
+    execute_process(COMMAND ${Python_EXECUTABLE} -c "import numpy" RESULT_VARIABLE numpy_missing ERROR_QUIET)
+  endif()
+  set(reason "")
+  if(NOT DRAPE_WITH_BULLET)
+    set(reason "it needs Bullet (libbullet-dev)")
+  elseif(DRAPE_SANITIZE)
+    set(reason "a sanitized module cannot be loaded")
+  elseif(NOT Python_FOUND OR NOT pybind11_FOUND OR numpy_missing)
+    set(reason "it needs python3-dev pybind11-dev python3-numpy")
+  endif()
+  if(NOT reason)
+    set(DRAPE_WITH_PYTHON ON)
+  elseif(DRAPE_PYTHON STREQUAL "AUTO")
+    message(STATUS "Without the Python module: ${reason}")
+  else()
+    message(FATAL_ERROR "DRAPE_PYTHON=ON: ${reason}")
   endif()
 endif()
 

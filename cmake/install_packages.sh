@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Installs the Debian 12 / Ubuntu 24.04 packages that Drape needs: install_packages.sh [--tools]
 #
-# For the library and its tools with --tools; else for benchmarks and tests, too.
+# For the library and its tools with --tools; else for benchmarks, the Python module and tests, too.
 # Calls apt only when dpkg says that something is missing, with sudo when not root. Fails, naming the packages, when
 # something is missing and cannot be installed. The one list of packages.
 set -euo pipefail
@@ -21,6 +21,8 @@ packages=(
 further=(
   # benchmarks: peers, plots
   libfcl-dev libtbb-dev python3-matplotlib
+  # the Python module and its tests
+  python3-dev pybind11-dev python3-numpy python3-pytest mypy
   # tests; a simulated GPU; fuzzing; the format of C++ and OpenCL C
   libgtest-dev oclgrind clang libclang-rt-dev clang-format
   # published data: unpacking

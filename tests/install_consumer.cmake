@@ -1,9 +1,10 @@
 # The test install.consumer installs Drape into WORK, then builds and runs examples/consumer against the installation.
 #
-# It builds once as a CMake package and once using pkg-config. It also compiles and runs every block of C++ in README.md
-# and docs/*.md using pkg-config.
+# It builds once as a CMake package and once using pkg-config. It also compiles and runs every block of C++ and C in
+# README.md and docs/*.md using pkg-config.
 # Input: BUILD (Drape's build folder), SOURCE (the consumer), DOCUMENTS (the folder of README.md and docs/), WORK (made
-# anew), LIBDIR, COMPILER, SANITIZE, DOUBLE (the precision of Bullet that Drape is built for).
+# anew), LIBDIR, COMPILER and C_COMPILER, SANITIZE, DOUBLE (the precision of Bullet that Drape is built for), and with
+# the Python module PYTHON and PYTHON_DIR.
 cmake_minimum_required(VERSION 3.25)
 function(must)
   execute_process(COMMAND ${ARGV} COMMAND_ECHO STDOUT COMMAND_ERROR_IS_FATAL ANY)
@@ -42,6 +43,19 @@ must(${COMPILER} -std=c++11 ${flags} ${SOURCE}/record.cpp -o ${WORK}/record_by_p
   -Wl,-rpath,${prefix}/${LIBDIR})
 must(${WORK}/record_by_pkg_config ${WORK}/recorded_by_pkg_config)
 
+# Every header compiles as C++11.
+file(GLOB headers RELATIVE ${prefix}/include ${prefix}/include/drape/*.h)
+list(TRANSFORM headers REPLACE "(.+)" "#include <\\1>\n" OUTPUT_VARIABLE lines)
+string(CONCAT lines ${lines})
+file(WRITE ${WORK}/headers.cpp "${lines}")
+must(${COMPILER} -std=c++11 ${flags} ${package_flags} -c ${WORK}/headers.cpp -o ${WORK}/headers.o)
+
+# The Python package, where it was built.
+if(PYTHON)
+  must(${CMAKE_COMMAND} -E env PYTHONPATH=${prefix}/${PYTHON_DIR} ${PYTHON} -B -c
+    "import drape; drape.ClothWorld(drape.Settings(backend='host')).step(); print(drape.__file__)")
+endif()
+
 # An app in the other precision: told by the compiler where it has the package's flags, else by the linker.
 set(other -DBT_USE_DOUBLE_PRECISION)
 if(DOUBLE)
@@ -58,9 +72,9 @@ foreach(stage "is built for Bullet in" "drapeIsBuiltForBulletIn(Double|Single)Pr
   list(APPEND other -UDRAPE_BULLET_DOUBLE)
 endforeach()
 
-# Every block of C++ in the documents must be a program that compiles as it stands, with nothing around it, and runs
-# well.
-set(opening "\n```[ ]*(cpp|c\\+\\+|C\\+\\+|cc|cxx)[^\n]*\n")
+# Every block of C++ or C in the documents must be a program that compiles as it stands, with nothing around it, and
+# runs well.
+set(opening "\n```[ ]*(cpp|c\\+\\+|C\\+\\+|cc|cxx|c|C)[ ]*\n")
 set(count 0)
 file(GLOB documents ${DOCUMENTS}/docs/*.md)
 foreach(document ${DOCUMENTS}/README.md ${documents})
@@ -69,13 +83,14 @@ foreach(document ${DOCUMENTS}/README.md ${documents})
   set(${name}_count 0)
   string(REGEX MATCH "${opening}" fence "${text}")
   while(fence)
+    set(language ${CMAKE_MATCH_1})
     string(FIND "${text}" "${fence}" begin)
     string(LENGTH "${fence}" length)
     math(EXPR begin "${begin} + ${length}")
     string(SUBSTRING "${text}" ${begin} -1 text)
     string(FIND "${text}" "\n```" end)
     if(end EQUAL -1)
-      message(FATAL_ERROR "A block of C++ in ${document} does not end")
+      message(FATAL_ERROR "A block of ${language} in ${document} does not end")
     endif()
     math(EXPR next "${end} + 4")
     string(SUBSTRING "${text}" 0 ${end} block)
@@ -83,9 +98,15 @@ foreach(document ${DOCUMENTS}/README.md ${documents})
     math(EXPR count "${count} + 1")
     math(EXPR ${name}_count "${${name}_count} + 1")
     set(program ${WORK}/${name}_${${name}_count})
-    file(WRITE ${program}.cpp "${block}\n")
-    must(${COMPILER} -std=c++11 ${flags} ${program}.cpp -o ${program} ${package_flags}
-      -Wl,-rpath,${prefix}/${LIBDIR})
+    if(language MATCHES "^[cC]$")
+      file(WRITE ${program}.c "${block}\n")
+      must(${C_COMPILER} -std=c99 -Wall -Wextra -pedantic -Werror ${flags} ${program}.c -o ${program} ${package_flags}
+        -lstdc++ -lm -Wl,-rpath,${prefix}/${LIBDIR})
+    else()
+      file(WRITE ${program}.cpp "${block}\n")
+      must(${COMPILER} -std=c++11 ${flags} ${program}.cpp -o ${program} ${package_flags}
+        -Wl,-rpath,${prefix}/${LIBDIR})
+    endif()
     execute_process(COMMAND ${program} OUTPUT_VARIABLE ${name}_${${name}_count} COMMAND_ERROR_IS_FATAL ANY)
     message("${${name}_${${name}_count}}")
     string(REGEX MATCH "${opening}" fence "${text}")
@@ -96,6 +117,9 @@ if(NOT README_1 MATCHES "^Drape on .* ([1-9][0-9]*) contacts" OR NOT README_1 MA
 endif()
 if(NOT queries_1 MATCHES "^1 near, 1 intersecting\nhit at 0\\.[45]")
   message(FATAL_ERROR "The program of docs/queries.md does not find the pair that meets")
+endif()
+if(NOT c_1 MATCHES "^[1-9][0-9]* contacts, node 0 at 0\\.0[12][0-9] m, good")
+  message(FATAL_ERROR "The program of docs/c.md does not find contacts")
 endif()
 if(NOT using_1 MATCHES "^step: good\nDrape handles the pair\n")
   message(FATAL_ERROR "The program of docs/using.md does not run with Drape")

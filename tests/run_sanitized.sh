@@ -14,7 +14,7 @@ if [[ ${1-} == --full ]]; then
   tier='^(fast|full)$'
   shift
 fi
-groups=(unit mesh_io oracle property stress bullet process startup tools)
+groups=(unit mesh_io oracle property stress bullet cloth_world process startup tools)
 bash cmake/install_packages.sh
 bash cmake/build_preset.sh asan "${groups[@]/#/drape_test_}"
 

@@ -41,6 +41,7 @@ bool checkSettings(const Settings& settings, Error& error)
         if (field.m_good) continue;
         std::ostringstream call;
         call << field.m_name << " is " << field.m_value;
+        error.m_kind = ErrorKind::Input;
         error.m_call = call.str();
         error.m_detail = std::string("it should be ") + field.m_range;
         return false;

@@ -27,6 +27,7 @@ struct CaughtException
 // Converts it to an error. `call` names the function.
 inline void setError(Error& error, const char* call, const CaughtException& caught) noexcept
 {
+    error.m_kind = caught.m_isMemory ? ErrorKind::Memory : ErrorKind::Environment;
     try
     {
         error.m_detail = caught.m_text;
@@ -36,6 +37,7 @@ inline void setError(Error& error, const char* call, const CaughtException& caug
     {
         error.m_detail.clear();
         error.m_call = kOutOfMemory;
+        error.m_kind = ErrorKind::Memory;
     }
 }
 

@@ -54,6 +54,7 @@ struct Queries::Implementation
     {
         if (good) return true;
         m_error = Error();
+        m_error.m_kind = ErrorKind::Input;
         m_error.m_call = std::string(call) + ": " + wrong;
         return false;
     }

@@ -8,6 +8,7 @@ bool checkIndices(const MeshDescription& mesh, const char* call, Error& error)
         (mesh.m_edgeCount > 0 && !mesh.m_edges))
     {
         error = Error();
+        error.m_kind = ErrorKind::Input;
         error.m_call = std::string(call) + ": a mesh without one of its arrays";
         return false;
     }
@@ -18,6 +19,7 @@ bool checkIndices(const MeshDescription& mesh, const char* call, Error& error)
             const std::int32_t index = indices[i];
             if (index >= 0 && std::size_t(index) < mesh.m_vertexCount) continue;
             error = Error();
+            error.m_kind = ErrorKind::Input;
             error.m_call = std::string(call) + ": a mesh with an index out of range";
             error.m_detail = what + (" " + std::to_string(i / each)) + " has the index " + std::to_string(index) +
                              " among " + std::to_string(mesh.m_vertexCount) + " vertices";

@@ -9,6 +9,14 @@
 // The namespace of Drape's public interface.
 namespace drape
 {
+// Says where the cause of a failure lies.
+enum class ErrorKind
+{
+    Environment,  // a device, its driver, or the environment's variables
+    Input,        // settings or arguments of the caller
+    Memory        // the host ran out of memory
+};
+
 // Names the call that failed and its cause. An Error owns its text.
 struct Error
 {
@@ -16,6 +24,8 @@ struct Error
     std::string m_call;
     // The kernel, triangle or field concerned, and the whole log; may have many lines.
     std::string m_detail;
+    // Side on which the cause lies; meaningful if failed() is true.
+    ErrorKind m_kind = ErrorKind::Environment;
 
     // Returns true if this describes a failure.
     bool failed() const { return !m_call.empty(); }

@@ -31,14 +31,6 @@ enum class TriangleTest
     Exact       // gives the exact answer: the host decides reported pairs without rounding
 };
 
-// Two triangles by index: one of each mesh, or two of the same mesh with the lower index first. Edges of
-// MeshDescription::m_edges are triangles without area, numbered behind the triangles.
-struct NearTriangles
-{
-    std::uint32_t m_a;  // index in the first mesh
-    std::uint32_t m_b;  // index in the second mesh
-};
-
 // Bits of a result's m_limits. Zero means that every candidate was tested and every answer is listed.
 enum QueryLimitBits : std::uint32_t
 {
@@ -62,17 +54,6 @@ struct MeshPairs
     std::vector<NearTriangles> m_within;
     // Pairs that intersect, decided exactly; sorted.
     std::vector<NearTriangles> m_intersecting;
-};
-
-// Two features that touch during a step.
-struct TouchingFeatures
-{
-    // DRAPE_VERTEX_FACE or DRAPE_EDGES.
-    std::uint32_t m_kind;
-    // Vertex indices in the order of CcdQuery.
-    std::uint32_t m_vertices[4];
-    // Time of impact, as a fraction of the step.
-    float m_time;
 };
 
 // Result of Queries::meshMotion. kQueryCandidateLimit means that the triangle pairs, or the feature pairs of both

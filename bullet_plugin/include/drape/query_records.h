@@ -63,6 +63,25 @@ typedef struct TriangleQuery
     float m_b[9];
 } TriangleQuery;
 
+// Two triangles by index: one of each mesh, or two of the same mesh with the lower index first. Edges of
+// MeshDescription::m_edges are triangles without area, numbered behind the triangles.
+typedef struct NearTriangles
+{
+    unsigned int m_a;  // index in the first mesh
+    unsigned int m_b;  // index in the second mesh
+} NearTriangles;
+
+// Two features that touch during a step.
+typedef struct TouchingFeatures
+{
+    // DRAPE_VERTEX_FACE or DRAPE_EDGES.
+    unsigned int m_kind;
+    // Vertex indices in the order of CcdQuery.
+    unsigned int m_vertices[4];
+    // Time of impact, as a fraction of the step.
+    float m_time;
+} TouchingFeatures;
+
 #ifdef __cplusplus
 }
 #endif
