@@ -42,7 +42,8 @@ Trajectory run(const Scene& scene, Settings settings, SolverPlace place)
 {
     settings.m_solver = Solver::Drape;
     settings.m_solverPlace = place;
-    settings.m_dynamicConvex = DynamicConvex::Bullet;  // else the host solves cloth beside them
+    settings.m_dynamicConvex = settings.m_staticConvex = ShapeContacts::Bullet;
+    settings.m_surfaces = ShapeContacts::Bullet;
     Plugin plugin(settings);
     MeshShape shape(makeSphere(0.4f, scene.m_levels));
     shape.shape().setMargin(scene.m_margin);

@@ -2,7 +2,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
+#include <string>
 
+#include "BulletCollision/CollisionDispatch/btGhostObject.h"
+#include "BulletCollision/CollisionDispatch/btCompoundCompoundCollisionAlgorithm.h"
+#include "BulletCollision/CollisionShapes/btCompoundShape.h"
 #include "scenes/shapes.h"
 #include "tests/bullet/drop_world.h"
 
@@ -65,14 +70,6 @@ TEST_F(Filters, AnObstacleWithoutContactResponseHoldsNothing)
     expectFallsThrough(m_world.addCloth(spec()));
 }
 
-TEST_F(Filters, ClothWithoutContactResponseIsNotHeld)
-{
-    m_world.addObstacle(m_shape.shape());
-    btSoftBody& cloth = m_world.addCloth(spec());
-    cloth.setCollisionFlags(cloth.getCollisionFlags() | btCollisionObject::CF_NO_CONTACT_RESPONSE);
-    expectFallsThrough(cloth);
-}
-
 TEST_F(Filters, SleepingClothKeepsItsPositionAndCollectsNoContacts)
 {
     m_world.addObstacle(m_shape.shape());
@@ -129,4 +126,155 @@ TEST_F(Filters, PinnedNodesBelowTheThicknessStay)
     for (int i = 10; i < cloth.m_nodes.size(); ++i)
         EXPECT_GT(cloth.m_nodes[i].m_x.y(), kTop) << "node " << i;
 }
+
+namespace
+{
+struct Pair
+{
+    DropWorld& m_world;
+    btSoftBody& m_cloth;
+    btCollisionObject& m_obstacle;
+};
+
+struct Filter
+{
+    std::string m_name;
+    std::function<void(Pair&)> m_set;  // before the first step
+    int m_group = 1, m_mask = -1;      // the cloth's
+};
+
+void setFlag(btCollisionObject& object, int flag)
+{
+    object.setCollisionFlags(object.getCollisionFlags() | flag);
+}
+
+struct NoPairs : btOverlapFilterCallback
+{
+    bool needBroadphaseCollision(btBroadphaseProxy*, btBroadphaseProxy*) const override { return false; }
+};
+
+const std::vector<Filter>& filters()
+{
+    static const std::vector<Filter> all = {
+        {"None", [](Pair&) {}},
+        {"MaskOfTheCloth", [](Pair&) {}, 1, -1 ^ int(btBroadphaseProxy::StaticFilter)},
+        {"GroupOfTheCloth", [](Pair&) {}, btBroadphaseProxy::StaticFilter, -1},
+        {"DisabledObjects", [](Pair& pair) { pair.m_cloth.m_collisionDisabledObjects.push_back(&pair.m_obstacle); }},
+        {"IgnoredByTheCloth", [](Pair& pair) { pair.m_cloth.setIgnoreCollisionCheck(&pair.m_obstacle, true); }},
+        {"IgnoredByTheObstacle", [](Pair& pair) { pair.m_obstacle.setIgnoreCollisionCheck(&pair.m_cloth, true); }},
+        {"IgnoredNoMore",
+         [](Pair& pair)
+         {
+             pair.m_cloth.setIgnoreCollisionCheck(&pair.m_obstacle, true);
+             pair.m_cloth.setIgnoreCollisionCheck(&pair.m_obstacle, false);
+         }},
+        {"ObstacleWithoutResponse",
+         [](Pair& pair) { setFlag(pair.m_obstacle, btCollisionObject::CF_NO_CONTACT_RESPONSE); }},
+        {"ClothWithoutResponse", [](Pair& pair) { setFlag(pair.m_cloth, btCollisionObject::CF_NO_CONTACT_RESPONSE); }},
+        {"SleepingCloth", [](Pair& pair) { pair.m_cloth.forceActivationState(ISLAND_SLEEPING); }},
+        {"SleepingObstacle", [](Pair& pair) { pair.m_obstacle.forceActivationState(ISLAND_SLEEPING); }},
+        {"DisabledSimulation", [](Pair& pair) { pair.m_cloth.forceActivationState(DISABLE_SIMULATION); }},
+        {"NearCallback",
+         [](Pair& pair)
+         {
+             pair.m_world.dispatcher().setNearCallback(
+                 [](btBroadphasePair&, btCollisionDispatcher&, const btDispatcherInfo&) {});
+         }},
+        {"OverlapFilter",
+         [](Pair& pair)
+         {
+             static NoPairs noPairs;
+             pair.m_world.world().getPairCache()->setOverlapFilterCallback(&noPairs);
+             pair.m_world.world().getBroadphase()->getOverlappingPairCache()->cleanProxyFromPairs(
+                 pair.m_cloth.getBroadphaseHandle(), &pair.m_world.dispatcher());
+             pair.m_world.world().refreshBroadphaseProxy(&pair.m_cloth);
+         }},
+        {"ChildrenThatAreBoxes",
+         [](Pair&)
+         {
+             gCompoundChildShapePairCallback = [](const btCollisionShape*, const btCollisionShape* child)
+             { return child->getShapeType() != BOX_SHAPE_PROXYTYPE; };
+         }},
+        {"ChildrenThatAreMeshes",
+         [](Pair&)
+         {
+             gCompoundChildShapePairCallback = [](const btCollisionShape*, const btCollisionShape* child)
+             { return child->getShapeType() != TRIANGLE_MESH_SHAPE_PROXYTYPE; };
+         }},
+    };
+    return all;
+}
+
+enum class Body
+{
+    Mesh,
+    Box,
+    Compound,
+    Ghost
+};
+
+// Returns whether the cloth has contacts that act on it, Bullet's or Drape's.
+bool hasContacts(const btSoftBody& cloth, const Plugin* plugin)
+{
+    if (!cloth.isActive()) return false;
+    for (int i = 0; i < cloth.m_rcontacts.size(); ++i)
+        if (cloth.m_rcontacts[i].m_cti.m_colObj->hasContactResponse()) return true;
+    return plugin && plugin->statistics().m_contacts > 0;
+}
+
+// Returns whether the pair makes contacts in any of the steps.
+bool collides(Plugin* plugin, const Filter& filter, Body kind)
+{
+    MeshShape mesh(makeBox(3, 0.4f, 3));
+    btBoxShape box(btVector3(btScalar(1.5), kTop, btScalar(1.5)));
+    btCompoundShape compound;
+    compound.addChildShape(btTransform::getIdentity(), &mesh.shape());
+    btCollisionShape& shape = kind == Body::Mesh       ? static_cast<btCollisionShape&>(mesh.shape())
+                              : kind == Body::Compound ? static_cast<btCollisionShape&>(compound)
+                                                       : box;
+    DropWorld world(plugin);
+    btGhostObject ghost;
+    ghost.setCollisionShape(&shape);
+    if (kind == Body::Ghost)
+        world.world().addCollisionObject(&ghost, btBroadphaseProxy::StaticFilter,
+                                         btBroadphaseProxy::AllFilter ^ btBroadphaseProxy::StaticFilter);
+    ClothSpec spec;
+    spec.m_nodes = 9;
+    spec.m_size = 0.6f;
+    spec.m_centre = btVector3(0, kTop + btScalar(0.05), 0);
+    btSoftBody& cloth = world.addCloth(spec, filter.m_group, filter.m_mask);
+    Pair pair = {world, cloth, kind == Body::Ghost ? ghost : world.addObstacle(shape)};
+    filter.m_set(pair);
+    bool collides = false;
+    for (int i = 0; i < 30; ++i)
+    {
+        world.step();
+        collides = collides || hasContacts(cloth, plugin);
+    }
+    gCompoundChildShapePairCallback = nullptr;
+    if (kind == Body::Ghost) world.world().removeCollisionObject(&ghost);
+    return collides;
+}
+
+class FiltersOfBullet : public testing::TestWithParam<Body>
+{
+};
+}  // namespace
+
+TEST_P(FiltersOfBullet, HaveTheEffectThatTheyHaveWithoutDrape)
+{
+    Plugin plugin(hostSettings());
+    int colliding = 0;
+    for (const Filter& filter : filters())
+    {
+        const bool isStock = collides(nullptr, filter, GetParam());
+        EXPECT_EQ(collides(&plugin, filter, GetParam()), isStock)
+            << filter.m_name << ", Bullet's contacts: " << isStock;
+        colliding += isStock;
+    }
+    EXPECT_GT(colliding, 3);
+    EXPECT_LT(colliding, int(filters().size()) - 5);
+}
+
+INSTANTIATE_TEST_SUITE_P(Bodies, FiltersOfBullet, testing::Values(Body::Mesh, Body::Box, Body::Compound, Body::Ghost));
 }  // namespace drape::test

@@ -30,6 +30,7 @@ struct SphereWorld
     SphereWorld(Settings settings, bool keeps) : m_shape(makeSphere(0.4f, 3))
     {
         settings.m_solver = Solver::Drape;
+        settings.m_staticConvex = ShapeContacts::Bullet;
         settings.m_solverPlace = keeps ? SolverPlace::Device : SolverPlace::Host;
         m_plugin = std::make_unique<Plugin>(settings);
         m_world = std::make_unique<DropWorld>(m_plugin.get());

@@ -235,7 +235,9 @@ TEST_P(Kinematic, AFastBodyWakesClothInTime)
 // A body whose pairs with the cloth Drape leaves to Bullet does not wake the cloth.
 TEST_P(Kinematic, ABodyOfBulletLetsClothSleep)
 {
-    Plugin plugin(GetParam().m_settings);
+    Settings settings = GetParam().m_settings;
+    settings.m_staticConvex = ShapeContacts::Bullet;
+    Plugin plugin(settings);
     DropWorld world(&plugin);
     btBoxShape box(btVector3(1, btScalar(0.1), 1));
     btCompoundShape compound;

@@ -57,6 +57,7 @@ void expectStockBits(const std::vector<Placed>& obstacles, MakeBodies make, int 
 {
     Settings settings = hostSettings();
     settings.m_solver = Solver::Bullet;
+    settings.m_staticConvex = ShapeContacts::Bullet;
     Plugin plugin(settings);
     const Outcome stock = run(nullptr, obstacles, make, steps), drape = run(&plugin, obstacles, make, steps);
     EXPECT_EQ(stock.m_hash, drape.m_hash);

@@ -75,8 +75,8 @@ WorldMesh read(btTriangleIndexVertexArray& arrays, std::uint64_t* signature = nu
     arrays.setPremadeAabb(btVector3(-9, -9, -9), btVector3(9, 9, 9));
     const btBvhTriangleMeshShape shape(&arrays, true, false);
     WorldMesh mesh;
-    readMesh(shape, btTransform::getIdentity(), mesh);
-    if (signature) *signature = meshSignature(shape);
+    readMesh(shape, btTransform::getIdentity(), ReadPart(), mesh);
+    if (signature) *signature = meshSignature(shape, ReadPart());
     return mesh;
 }
 
@@ -105,6 +105,23 @@ TEST(MeshReader, EveryTypeAndStrideGivesTheSameMesh)
     expectSame(read(Part::make<double, std::uint8_t>(mesh, PHY_DOUBLE, PHY_UCHAR)), mesh);
 }
 
+TEST(MeshReader, AFilterLeavesTrianglesOfAPartOut)
+{
+    const TriangleMesh mesh = makeBox(1.0f, 2.0f, 3.0f);
+    Part parts[2] = {plainPart(mesh), plainPart(mesh)};
+    btTriangleIndexVertexArray arrays;
+    for (Part& part : parts)
+        part.addTo(arrays, part);
+    arrays.setPremadeAabb(btVector3(-9, -9, -9), btVector3(9, 9, 9));
+    const btBvhTriangleMeshShape shape(&arrays, true, false);
+    const TriangleFilter filter = [](int part, int triangle) { return part == 0 || triangle < 2; };
+    WorldMesh read;
+    readMesh(shape, btTransform::getIdentity(), {{}, &filter}, read);
+    ASSERT_EQ(read.m_triangles.size(), mesh.m_triangles.size() + 6);
+    EXPECT_TRUE(std::equal(mesh.m_triangles.begin(), mesh.m_triangles.end(), read.m_triangles.begin()));
+    EXPECT_EQ(read.m_triangles.back(), mesh.m_triangles[5] + int(mesh.vertexCount()));
+}
+
 TEST(MeshReader, ScalingAndPoseAreApplied)
 {
     const TriangleMesh mesh = makeBox(1.0f, 2.0f, 3.0f);
@@ -114,7 +131,7 @@ TEST(MeshReader, ScalingAndPoseAreApplied)
     arrays.setScaling(btVector3(2, 1, 1));
     const btBvhTriangleMeshShape shape(&arrays, true, false);
     WorldMesh moved;
-    readMesh(shape, btTransform(btQuaternion::getIdentity(), btVector3(0, 5, 0)), moved);
+    readMesh(shape, btTransform(btQuaternion::getIdentity(), btVector3(0, 5, 0)), ReadPart(), moved);
     ASSERT_EQ(moved.m_positions.size(), mesh.m_positions.size());
     for (std::size_t i = 0; i < mesh.m_positions.size(); i += 3)
     {

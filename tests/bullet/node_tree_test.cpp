@@ -193,6 +193,7 @@ TEST(NodeTree, ContactsWithABoxAreThoseOfAllNodes)
     {
         Settings settings = hostSettings();
         settings.m_solver = solver;
+        settings.m_staticConvex = ShapeContacts::Bullet;
         Plugin plugin(settings);
         CheckedWorld<SoftBodySolver> world(plugin);
         btSoftBody& cloth = world.addCloth(33, btScalar(0.8));
@@ -234,7 +235,9 @@ TEST(NodeTree, ContactsWithAnotherClothAreThoseOfAllNodes)
 // Drape does not see what another solver reads, not even of a body that sleeps.
 TEST(NodeTree, IsKeptInEveryStepForASolverOfTheApps)
 {
-    Plugin plugin(hostSettings());
+    Settings settings = hostSettings();
+    settings.m_staticConvex = ShapeContacts::Bullet;
+    Plugin plugin(settings);
     CheckedWorld<SoftBodySolver> world(plugin);
     btSoftBody &cloth = world.addCloth(33, btScalar(0.8)), &sleeper = world.addCloth(17, 20);
     for (int step = 0; step < 30; ++step)

@@ -186,6 +186,7 @@ TEST(Prediction, ManyBodiesMoveAlikeOnAnyNumberOfThreads)
     {
         Settings settings = hostSettings();
         settings.m_threads = threads;
+        settings.m_staticConvex = ShapeContacts::Bullet;
         Plugin plugin(settings);
         DropWorld world(&plugin);
         MeshShape ground(makeTerrain(6.0f, 0.05f, 48, 3));

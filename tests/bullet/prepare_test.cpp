@@ -168,7 +168,7 @@ TEST_P(Prepared, AWorldIsPreparedAtOnce)
     EXPECT_EQ(plugin.whyStock(&cloth, world.world().getCollisionObjectArray()[0]), "");
 }
 
-// Prepares a compound's meshes, and changes after the preparation.
+// Prepares a compound's children, and changes after the preparation.
 TEST_P(Prepared, ChildrenAndChangesArePrepared)
 {
     MeshShape sphere(makeSphere(0.3f, 2)), slab(makeBox(2.0f, 0.1f, 2.0f));

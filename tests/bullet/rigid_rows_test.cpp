@@ -18,7 +18,7 @@ Settings drapeSolves()
 {
     Settings settings = hostSettings();
     settings.m_solver = Solver::Drape;
-    settings.m_dynamicConvex = DynamicConvex::Bullet;
+    settings.m_dynamicConvex = settings.m_staticConvex = ShapeContacts::Bullet;
     return settings;
 }
 
@@ -190,7 +190,7 @@ TEST_P(RigidRowsOn, GiveTheSameBits)
     const auto run = [&](Settings settings)
     {
         settings.m_solver = Solver::Drape;
-        settings.m_dynamicConvex = DynamicConvex::Bullet;
+        settings.m_dynamicConvex = settings.m_staticConvex = ShapeContacts::Bullet;
         Plugin plugin(settings);
         MeshShape shape(sphere);
         DropWorld world(&plugin);

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "BulletCollision/Gimpact/btGImpactShape.h"
+#include "BulletCollision/CollisionShapes/btBox2dShape.h"
 #include "scenes/shapes.h"
 #include "tests/bullet/drop_world.h"
 #include "tests/support/environment.h"
@@ -60,16 +61,6 @@ TEST_F(Stock, DrapeTakesAStaticMesh)
     EXPECT_EQ(m_plugin.whyStock(&addCloth(), &m_world.addObstacle(m_shape.shape())), "");
 }
 
-TEST_F(Stock, ABoxShapeHoldsTheCloth)
-{
-    btBoxShape box(btVector3(1, btScalar(0.2), 1));
-    btCollisionObject& object = m_world.addObstacle(box);
-    btSoftBody& cloth = addCloth();
-    expectReason(cloth, object, "not a triangle mesh");
-    expectBulletHasIt(cloth, 90);
-    EXPECT_GT(lowestOf(cloth), btScalar(0.19));
-}
-
 TEST_F(Stock, DrapeTakesAKinematicMesh)
 {
     EXPECT_EQ(m_plugin.whyStock(&addCloth(), &m_world.addKinematic(m_shape.shape())), "");
@@ -97,7 +88,7 @@ TEST_F(Stock, ADynamicBodyIsLeftToBulletBesideClothThatBulletSolves)
 TEST(DynamicConvexShapes, AreLeftToBulletOnRequest)
 {
     Settings settings = hostSettings();
-    settings.m_dynamicConvex = DynamicConvex::Bullet;
+    settings.m_dynamicConvex = ShapeContacts::Bullet;
     Plugin plugin(settings);
     DropWorld world(&plugin);
     btBoxShape box(btVector3(1, btScalar(0.2), 1));
@@ -152,7 +143,7 @@ TEST_F(Stock, AGImpactCompoundIsLeftToBullet)
 
 TEST_F(Stock, TheReasonNamesTheChildOfACompound)
 {
-    btBoxShape box(btVector3(1, 1, 1));
+    btBox2dShape box(btVector3(1, 1, 1));
     btCompoundShape compound;
     compound.addChildShape(btTransform::getIdentity(), &m_shape.shape());
     compound.addChildShape(btTransform::getIdentity(), &box);

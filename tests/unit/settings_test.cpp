@@ -39,7 +39,9 @@ TEST(SettingsRanges, ValuesOutOfRangeAreRefused)
     EXPECT_NE(errorOfSettings([](Settings& s) { s.m_mode = ContactMode(3); }), "");
     EXPECT_NE(errorOfSettings([](Settings& s) { s.m_solver = Solver(3); }), "");
     EXPECT_NE(errorOfSettings([](Settings& s) { s.m_solverPlace = SolverPlace(3); }), "");
-    EXPECT_NE(errorOfSettings([](Settings& s) { s.m_dynamicConvex = DynamicConvex(2); }), "");
+    EXPECT_NE(errorOfSettings([](Settings& s) { s.m_dynamicConvex = ShapeContacts(2); }), "");
+    EXPECT_NE(errorOfSettings([](Settings& s) { s.m_staticConvex = ShapeContacts(2); }), "");
+    EXPECT_NE(errorOfSettings([](Settings& s) { s.m_surfaces = ShapeContacts(2); }), "");
     EXPECT_NE(errorOfSettings([](Settings& s) { s.m_crossover = double(kNaN); }), "");
     EXPECT_EQ(errorOfSettings([](Settings& s) { s.m_crossover = double(kInfinity); }), "");
 }

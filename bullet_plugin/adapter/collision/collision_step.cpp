@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <iterator>
 
 #include "bullet_plugin/adapter/collision/stretch.h"
@@ -19,6 +20,17 @@ bool jumps(const BodyMotion& motion, btScalar size)
     const btMatrix3x3 turn = motion.m_end.getBasis() * motion.m_start.getBasis().transpose();
     return (motion.m_end.getOrigin() - motion.m_start.getOrigin()).length() > 2 * size ||
            turn[0][0] + turn[1][1] + turn[2][2] < 1;
+}
+
+// Returns the bounds of the obstacle at the motion's end, m: of a plane near the cloth.
+SurfaceBox boundsOf(const PairNote& note)
+{
+    const btCollisionShape& shape = *note.m_obstacle.m_shape;
+    SurfaceBox bounds = {note.m_cloth->m_bounds[0], note.m_cloth->m_bounds[1]};
+    bounds.grow(bounds.m_high - bounds.m_low);
+    if (isSurfaceShape(shape)) return surfaceBounds(shape, note.m_motion.m_end, bounds);
+    shape.getAabb(note.m_motion.m_end, bounds.m_low, bounds.m_high);
+    return bounds;
 }
 
 // Returns whether contacts could move any of the body's nodes.
@@ -119,6 +131,19 @@ CollisionStep::Pair CollisionStep::makePair(const PairNote& note, const ClothMir
     return pair;
 }
 
+// Reports a cloth that covers more cells of a height field than a step reads. It does not collide with the field.
+void CollisionStep::leaveOutField(const PairNote& note)
+{
+    m_fieldsLeftOut = true;
+    if (!m_told.insert(note.m_cloth).second) return;
+    char line[256];
+    std::snprintf(line, sizeof(line),
+                  "soft body %p covers more cells of the height field of object %p than a step reads, and does not "
+                  "collide with it in this step",
+                  static_cast<const void*>(note.m_cloth), static_cast<const void*>(note.m_obstacle.m_object));
+    m_state.log(line);
+}
+
 void CollisionStep::addPair(const PairNote& note)
 {
     ClothMirror& cloth = m_state.clothMirror(note);
@@ -127,7 +152,9 @@ void CollisionStep::addPair(const PairNote& note)
         if (m_state.m_kept.stepOf(*note.m_cloth)) m_bringToHost(*note.m_cloth);
     };
     const MeshId clothId = bodyOf(cloth.id()) ? cloth.id() : cloth.refresh(m_state.pipeline(), bringToHost);
-    const MeshId obstacleId = m_state.obstacleMirror(note).refresh(m_state.pipeline(), note.m_isMovable, note.m_motion);
+    ObstacleMirror& obstacle = m_state.obstacleMirror(note);
+    const MeshId obstacleId = obstacle.refresh(m_state.pipeline(), note.m_isMovable, note.m_motion);
+    if (obstacle.isTooLarge()) leaveOutField(note);
     if (clothId == kNoMesh || obstacleId == kNoMesh) return;
     if (!bodyOf(clothId))
     {
@@ -138,8 +165,8 @@ void CollisionStep::addPair(const PairNote& note)
     m_state.m_found.nameObstacle(obstacleId, note.m_obstacle.m_object, note.m_motion);
     if (!m_paired.insert(std::uint64_t(clothId) << 32 | obstacleId).second) return;
     m_pairs.push_back(makePair(note, cloth, obstacleId));
-    btVector3 low, high;
-    note.m_obstacle.m_shape->getAabb(note.m_motion.m_end, low, high);
+    const SurfaceBox bounds = boundsOf(note);
+    btVector3 low = bounds.m_low, high = bounds.m_high;
     // Accounts for a negative margin: it makes Bullet's box smaller than the mesh, by up to √3 times the margin when
     // turned.
     const btScalar lacks = btScalar(1.7321) * std::max(btScalar(0), -note.m_obstacle.m_shape->getMargin());
@@ -237,6 +264,7 @@ void CollisionStep::begin(const std::vector<PairNote>& notes, BringToHost bringT
     clear();
     m_bringToHost = std::move(bringToHost);
     m_uploadMs = 0;
+    m_fieldsLeftOut = false;
     m_state.m_found.clear();
     // Adding and removing meshes moves the memory that nodes are written to: mirrors first, nodes after.
     m_state.dropOldMirrors();

@@ -92,6 +92,7 @@ private:
     };
 
     void addPair(const PairNote& note);
+    void leaveOutField(const PairNote& note);
     Pair makePair(const PairNote& note, const ClothMirror& cloth, MeshId obstacle);
     void addDynamic(BodyContacts& body, MeshId obstacle, const PairNote& note);
     void checkStarts();
@@ -138,9 +139,10 @@ private:
     std::vector<const btSoftBody*> m_pinned;
     std::vector<ClothMirror*> m_mirrors;  // one for each of m_bodies
     std::vector<Upload> m_uploads;
-    bool m_heldTogether = false;  // any body, since the last detection
-    double m_uploadMs = 0;        // see uploadMs()
-    bool m_neededHost = false;    // see neededHost()
+    bool m_heldTogether = false;   // any body, since the last detection
+    double m_uploadMs = 0;         // see uploadMs()
+    bool m_neededHost = false;     // see neededHost()
+    bool m_fieldsLeftOut = false;  // a cloth covers too many cells of a height field
     BringToHost m_bringToHost;
     DeformedPairs m_deformed;
     PairStarts m_starts;

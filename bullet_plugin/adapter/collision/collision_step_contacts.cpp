@@ -203,6 +203,7 @@ void CollisionStep::finish(const TakeSolved& takeSolved)
 {
     m_state.m_statistics = StepStatistics();
     m_state.m_statistics.m_skipped = m_pairs.empty();
+    if (m_fieldsLeftOut) m_state.m_statistics.m_status |= kStepClothsLeftOut;
     if (m_state.pipeline().deviceFailed()) m_state.m_statistics.m_status |= kStepDeviceFailed;
     for (const ClothMirror* cloth : m_mirrors)
         if (cloth->hasForeignFaces()) m_state.m_statistics.m_status |= kStepFacesLeftOut;
@@ -356,7 +357,7 @@ void CollisionStep::followDynamic()
         pair.m_note.endMotion();
         pair.m_start.m_motion = pair.m_note.m_motion;
         mirror.follow(m_state.pipeline(), pair.m_note.m_motion);
-        mirror.setBodyEnd(pair.m_note.m_dynamic->getWorldTransform(), pair.m_note.m_place);
+        mirror.setBodyEnd(pair.m_note.m_dynamic->getWorldTransform());
         m_state.m_found.nameObstacle(pair.m_obstacle, pair.m_note.m_dynamic, pair.m_note.m_motion);
         BodyContacts& body = *bodyOf(pair.m_cloth);
         body.m_contacts.m_movesOnly = body.m_hasDynamicPair;

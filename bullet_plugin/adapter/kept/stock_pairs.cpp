@@ -65,9 +65,9 @@ bool isStockPair(const PluginState& state, const btSoftBody& body, const btColli
     if (!respond(body, object) || !body.checkCollideWith(&object) || !object.checkCollideWith(&body)) return false;
     if (const btSoftBody* const other = btSoftBody::upcast(&object)) return bothCollide(body, *other);
     const btCollisionShape& shape = *object.getCollisionShape();
-    if (shape.getShapeType() == STATIC_PLANE_PROXYTYPE)
-        return reachesBelow(body, object, static_cast<const btStaticPlaneShape&>(shape));
-    return !handlesAll(state, body, object, shape);
+    if (handlesAll(state, body, object, shape)) return false;
+    return shape.getShapeType() != STATIC_PLANE_PROXYTYPE ||
+           reachesBelow(body, object, static_cast<const btStaticPlaneShape&>(shape));
 }
 
 bool anyStockPair(const PluginState& state, const btSoftBody& body)

@@ -217,27 +217,35 @@ bool isFinite(const WorldMesh& mesh, std::size_t vertex)
     return std::isfinite(at[0]) && std::isfinite(at[1]) && std::isfinite(at[2]);
 }
 
-// Appends the part's triangles. Reverses the corners of a mirrored mesh, so that a triangle's front stays its front.
-void appendTriangles(const LockedPart& part, const UsedVertices& used, std::size_t first, bool mirrored,
-                     WorldMesh& mesh)
+// A part's position among the parts of its mesh, and what is done with its triangles.
+struct PartReading
+{
+    int m_part;
+    std::size_t m_first;             // index of its first vertex
+    bool m_mirrored;                 // corners are reversed, so that a triangle's front stays its front
+    const TriangleFilter* m_filter;  // null for all triangles
+};
+
+void appendTriangles(const LockedPart& part, const UsedVertices& used, const PartReading& reading, WorldMesh& mesh)
 {
     for (int t = 0; t < part.triangleCount(); ++t)
     {
+        if (reading.m_filter && !(*reading.m_filter)(reading.m_part, t)) continue;
         std::int32_t corners[3];
         bool usable = true;
         for (int k = 0; k < 3; ++k)
         {
             const std::int32_t place = used.place(part.index(t, k));
-            corners[k] = static_cast<std::int32_t>(first) + place;
+            corners[k] = static_cast<std::int32_t>(reading.m_first) + place;
             usable = usable && place >= 0 && isFinite(mesh, static_cast<std::size_t>(corners[k]));
         }
-        if (mirrored) std::swap(corners[1], corners[2]);
+        if (reading.m_mirrored) std::swap(corners[1], corners[2]);
         if (usable) mesh.m_triangles.insert(mesh.m_triangles.end(), corners, corners + 3);
     }
 }
 
 // Appends all parts of a mesh shape.
-void appendParts(const btCollisionShape& shape, const btTransform& pose, WorldMesh& mesh)
+void appendParts(const btCollisionShape& shape, const btTransform& pose, const TriangleFilter* filter, WorldMesh& mesh)
 {
     const ScaledMesh source = resolve(shape);
     const bool mirrored = source.m_scaling.x() * source.m_scaling.y() * source.m_scaling.z() < 0;
@@ -245,9 +253,9 @@ void appendParts(const btCollisionShape& shape, const btTransform& pose, WorldMe
     {
         const LockedPart part(source.mesh(), p);
         const UsedVertices used(part);
-        const std::size_t first = mesh.m_positions.size() / 3;
+        const PartReading reading = {p, mesh.m_positions.size() / 3, mirrored, filter};
         appendVertices(part, used, source.m_scaling, pose, mesh);
-        appendTriangles(part, used, first, mirrored, mesh);
+        appendTriangles(part, used, reading, mesh);
     }
 }
 
@@ -259,11 +267,17 @@ void appendConvex(const btConvexShape& shape, const btTransform& pose, WorldMesh
         appendPosition(pose * vertex, mesh);
 }
 
-// Returns a number that changes with a convex shape's surface.
-std::uint64_t convexSignature(const btConvexShape& shape)
+void appendSurface(const btCollisionShape& shape, const btTransform& pose, const ReadPart& part, WorldMesh& mesh)
 {
-    std::vector<btVector3> points;
-    listSurface(shape, points);
+    std::vector<btVector3> vertices;
+    readSurface(shape, part.m_boxes, part.m_filter ? *part.m_filter : TriangleFilter(), vertices, mesh.m_triangles);
+    for (const btVector3& vertex : vertices)
+        appendPosition(pose * vertex, mesh);
+}
+
+// Returns a number that changes with the points and the type of a shape.
+std::uint64_t signatureOf(const btCollisionShape& shape, const std::vector<btVector3>& points)
+{
     Hash hash;
     hash.add(std::uint64_t(shape.getShapeType()));
     for (const btVector3& point : points)
@@ -283,12 +297,12 @@ bool isReadableType(int shapeType)
 {
     return shapeType == TRIANGLE_MESH_SHAPE_PROXYTYPE || shapeType == SCALED_TRIANGLE_MESH_SHAPE_PROXYTYPE ||
            shapeType == MULTIMATERIAL_TRIANGLE_MESH_PROXYTYPE || shapeType == GIMPACT_SHAPE_PROXYTYPE ||
-           isConvexType(shapeType);
+           isConvexType(shapeType) || isSurfaceType(shapeType);
 }
 
 bool isMeshShape(const btCollisionShape& shape)
 {
-    if (isConvexShape(shape)) return false;
+    if (isConvexShape(shape) || isSurfaceShape(shape)) return false;
     if (shape.getShapeType() != GIMPACT_SHAPE_PROXYTYPE) return isReadableType(shape.getShapeType());
     const auto kind = static_cast<const btGImpactShapeInterface&>(shape).getGImpactShapeType();
     return kind == CONST_GIMPACT_TRIMESH_SHAPE;
@@ -296,7 +310,7 @@ bool isMeshShape(const btCollisionShape& shape)
 
 bool isReadable(const btCollisionShape& shape)
 {
-    return isMeshShape(shape) || isConvexShape(shape);
+    return isMeshShape(shape) || isConvexShape(shape) || isSurfaceShape(shape);
 }
 
 btScalar meshMargin(const btCollisionShape& shape)
@@ -306,24 +320,25 @@ btScalar meshMargin(const btCollisionShape& shape)
 
 const btCollisionShape* meshShapeOf(const btCollisionShape& shape)
 {
-    if (isConvexShape(shape)) return &shape;
-    return resolve(shape).m_shape;
+    return isMeshShape(shape) ? resolve(shape).m_shape : &shape;
 }
 
 btScalar marginBeyondBounds(const btCollisionShape& shape)
 {
-    if (shape.getShapeType() == GIMPACT_SHAPE_PROXYTYPE || isConvexShape(shape)) return 0;
+    if (shape.getShapeType() == GIMPACT_SHAPE_PROXYTYPE || !isMeshShape(shape)) return 0;
     return std::max(btScalar(0), marginOf(shape) - resolve(shape).m_shape->getMargin());
 }
 
-void readMesh(const btCollisionShape& shape, const btTransform& pose, WorldMesh& mesh)
+void readMesh(const btCollisionShape& shape, const btTransform& pose, const ReadPart& part, WorldMesh& mesh)
 {
     mesh.m_triangles.clear();
     mesh.m_positions.clear();
     if (isConvexShape(shape))
         appendConvex(static_cast<const btConvexShape&>(shape), pose, mesh);
+    else if (isSurfaceShape(shape))
+        appendSurface(shape, pose, part, mesh);
     else
-        appendParts(shape, pose, mesh);
+        appendParts(shape, pose, part.m_filter, mesh);
     clearInvalid(mesh.m_positions);
 
     Hash topology, positions;
@@ -336,9 +351,12 @@ void readMesh(const btCollisionShape& shape, const btTransform& pose, WorldMesh&
     mesh.m_positionHash = positions.value();
 }
 
-std::uint64_t meshSignature(const btCollisionShape& shape)
+std::uint64_t meshSignature(const btCollisionShape& shape, const ReadPart& read)
 {
-    if (isConvexShape(shape)) return convexSignature(static_cast<const btConvexShape&>(shape));
+    std::vector<btVector3> points;
+    if (isConvexShape(shape)) listSurface(static_cast<const btConvexShape&>(shape), points);
+    if (isSurfaceShape(shape)) sampleSurface(shape, read.m_boxes, points);
+    if (!isMeshShape(shape)) return signatureOf(shape, points);
     const ScaledMesh source = resolve(shape);
     Hash hash;
     hash.add(std::uint64_t(reinterpret_cast<std::uintptr_t>(&source.mesh())));

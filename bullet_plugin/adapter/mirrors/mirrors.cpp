@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "bullet_plugin/adapter/mirrors/mesh_reader.h"
 #include "bullet_plugin/adapter/pairs/margins.h"
 #include "bullet_plugin/adapter/vectors.h"
 #include "bullet_plugin/core/scene/scene.h"
@@ -20,6 +19,9 @@ constexpr int kFacesPerCheck = 32768;
 // Share of a mesh's size that vertices may move in a step. Farther motion counts as another pose set by the app.
 constexpr float kMostMotion = 0.5f;
 
+// Part of a plane or height field that is read, in sizes of the cloths near it, at most. More was needed before.
+constexpr btScalar kWidestPart = 4;
+
 // Nodes that a thread checks per turn; fewer do not justify waking one.
 constexpr std::size_t kNodesPerJob = 4096;
 
@@ -31,6 +33,25 @@ void ignoreForeign(std::vector<std::int32_t>& triangles)
         if (std::count(&triangles[i], &triangles[i] + 3, kForeign) > 0) std::fill(&triangles[i], &triangles[i] + 3, 0);
 }
 
+// Returns the sum of the boxes' diagonals, m.
+btScalar sizeOf(const std::vector<SurfaceBox>& boxes)
+{
+    btScalar sum = 0;
+    for (const SurfaceBox& box : boxes)
+        sum += (box.m_high - box.m_low).length();
+    return sum;
+}
+
+// Returns whether a shape that goes from one place to the other in a step was put there instead: farther than its size,
+// or turned by more than a right angle.
+bool isPut(const btCollisionShape& shape, const btTransform& from, const btTransform& to)
+{
+    btVector3 low, high;
+    shape.getAabb(btTransform::getIdentity(), low, high);
+    const btMatrix3x3 turn = to.getBasis() * from.getBasis().transpose();
+    return (to.getOrigin() - from.getOrigin()).length() > (high - low).length() ||
+           turn[0][0] + turn[1][1] + turn[2][2] < 1;
+}
 }  // namespace
 
 bool ClothMirror::sameFaces(int begin, int end) const
@@ -180,11 +201,63 @@ bool ClothMirror::movedAlong(const btTransform& map, btScalar slack) const
     return false;
 }
 
-void ObstacleMirror::reload(Pipeline& pipeline, const btTransform& pose)
+void ObstacleMirror::beginStep(bool oneSided, const TriangleFilter* filter)
+{
+    m_wanted.clear();
+    m_oneSided = oneSided;
+    m_part.m_filter = filter;
+}
+
+void ObstacleMirror::place(const btTransform& place)
+{
+    if (m_placedStep == m_lastSeen) return;  // another cloth's pair has placed it
+    const bool isKnown = m_placedStep > 0 && m_continued && !m_isTeleported;
+    m_placedStep = m_lastSeen;
+    if (place == m_place)
+        m_placing = Placing::Stays;
+    else if (isKnown && !isPut(*m_key.m_shape, m_place, place))
+        m_placing = Placing::Moves;
+    else
+        m_placing = Placing::Jumps;
+    m_isTeleported = false;
+    m_placeBefore = m_place;
+    m_place = place;
+    m_movesInCompound = m_movesInCompound || movesPlace();
+}
+
+btTransform ObstacleMirror::startOf(const btTransform& body, const btTransform& pose, bool isDynamic) const
+{
+    if (m_placing == Placing::Jumps) return pose;
+    if (body == m_bodyEnd && (isDynamic || movesPlace())) return m_end;
+    return movesPlace() ? body * m_placeBefore : pose;
+}
+
+// Returns whether a cloth needs more of the surface than was read, or all of them much less.
+bool ObstacleMirror::leavesPart() const
+{
+    const std::vector<SurfaceBox>& read = m_part.m_boxes;
+    const auto isRead = [&](const SurfaceBox& wanted)
+    { return std::any_of(read.begin(), read.end(), [&](const SurfaceBox& box) { return box.contains(wanted); }); };
+    return !std::all_of(m_wanted.begin(), m_wanted.end(), isRead) || sizeOf(read) > kWidestPart * sizeOf(m_wanted);
+}
+
+// Chooses the part of the surface that the step needs. Returns whether it is another than before.
+bool ObstacleMirror::readsElsewhere()
+{
+    if (!leavesPart()) return false;
+    m_part.m_boxes = m_wanted;
+    for (SurfaceBox& box : m_part.m_boxes)
+        box.grow(box.slack());
+    m_isTooLarge = !isSurfaceReadable(*m_key.m_shape, m_part.m_boxes);
+    if (m_isTooLarge) m_part.m_boxes.clear();
+    return true;
+}
+
+void ObstacleMirror::reload(Pipeline& pipeline, const btTransform& pose, bool isElsewhere)
 {
     WorldMesh mesh;
-    readMesh(*m_key.m_shape, pose, mesh);
-    if (m_id != kNoMesh && mesh.m_topologyHash == m_topologyHash)
+    readMesh(*m_key.m_shape, pose, m_part, mesh);
+    if (m_id != kNoMesh && mesh.m_topologyHash == m_topologyHash && !isElsewhere)
     {
         if (mesh.m_positionHash != m_positionHash) deform(pipeline, mesh.m_positions, pose == m_pose);
     }
@@ -249,8 +322,12 @@ MeshId ObstacleMirror::refresh(Pipeline& pipeline, bool movable, const BodyMotio
     m_isMovable = movable;
     m_heldOneSided = m_oneSided;
     const btTransform pose = movable ? btTransform::getIdentity() : motion.m_end;
-    const std::uint64_t signature = meshSignature(*m_key.m_shape);
-    if (!m_read || signature != m_signature || !(pose == m_pose)) reload(pipeline, pose);
+    const bool isElsewhere = isSurfaceShape(*m_key.m_shape) && readsElsewhere();
+    // Each cloth beside the surface refreshes it, and its samples grow with the cloths.
+    const bool isSampled = isSurfaceShape(*m_key.m_shape) && !isElsewhere && m_sampledStep == m_lastSeen;
+    const std::uint64_t signature = isSampled ? m_signature : meshSignature(*m_key.m_shape, m_part);
+    m_sampledStep = m_lastSeen;
+    if (!m_read || isElsewhere || signature != m_signature || !(pose == m_pose)) reload(pipeline, pose, isElsewhere);
     m_meshShape = meshShapeOf(*m_key.m_shape);
     m_signature = signature;
     m_pose = pose;

@@ -9,7 +9,8 @@
 // changed.
 //
 // Cost: meshSignature() for an unchanged obstacle or a kinematic one that only moved; a comparison of some indices
-// for an unchanged cloth. Metres; positions are in a movable obstacle's own frame, else in the world's.
+// for an unchanged cloth. A plane or height field is read around the cloths near it, and anew when one of them leaves
+// what was read. Metres; positions are in a movable obstacle's own frame, else in the world's.
 #pragma once
 
 #include <cstdint>
@@ -22,6 +23,7 @@
 #include "bullet_plugin/core/solver/topology/cloth_faces.h"
 #include "bullet_plugin/core/solver/topology/feature_order.h"
 #include "bullet_plugin/adapter/motion/kinematic_motion.h"
+#include "bullet_plugin/adapter/mirrors/mesh_reader.h"
 #include "bullet_plugin/adapter/mirrors/solid_links.h"
 #include "bullet_plugin/core/pipeline/pipeline.h"
 #include "bullet_plugin/core/probe/mesh_probe.h"
@@ -128,6 +130,12 @@ public:
     const ObstacleKey& key() const { return m_key; }
     MeshId id() const { return m_id; }
 
+    // Begins the first use in a step. filter: null for all triangles; must live until the step's refresh() calls.
+    void beginStep(bool oneSided, const TriangleFilter* filter);
+    // Names a cloth near the plane or height field, by its box in the shape's frame, m. For the coming refresh() calls.
+    void wantAround(const SurfaceBox& cloth) { m_wanted.push_back(cloth); }
+    // Returns whether the last refresh() gave no mesh because the cloths cover too many cells of a height field.
+    bool isTooLarge() const { return m_isTooLarge; }
     // movable: of a kinematic or dynamic object. Other obstacles rest at the motion's end.
     MeshId refresh(Pipeline& pipeline, bool movable, const BodyMotion& motion);
     // Gives a movable obstacle's motion in this step another end. Call after refresh().
@@ -135,18 +143,19 @@ public:
     // True for the shape itself and for the mesh shape that a scaled shape shows, as they were last refreshed.
     bool uses(const btCollisionShape* shape) const { return shape == m_key.m_shape || shape == m_meshShape; }
     void requireReading() { m_read = false; }
-    // Returns where a dynamic obstacle starts a step with its body at `body` and its shape at `place` in it: where it
-    // ended the last one, if both are what they were. Else `pose`, which differs from that by rounding in a compound.
-    const btTransform& startOf(const btTransform& body, const btTransform& place, const btTransform& pose) const
-    {
-        return body == m_bodyEnd && place == m_place ? m_end : pose;
-    }
-    // Records where the body of a dynamic obstacle ends the step.
-    void setBodyEnd(const btTransform& body, const btTransform& place)
-    {
-        m_bodyEnd = body;
-        m_place = place;
-    }
+    // Takes the shape's place in its object for the step: it changes where an app moves a compound's child. A change
+    // that is too large for a motion, or announced as a teleport, is none.
+    void place(const btTransform& place);
+    // Returns whether the place moves in this step, and whether it ever did.
+    bool movesPlace() const { return m_placing == Placing::Moves; }
+    bool movesInCompound() const { return m_movesInCompound; }
+    // Returns where the shape starts the step with its object at `body`. pose: where it is without a motion in its
+    // object. isDynamic: it starts where it ended the last step if its object does; `pose` differs by rounding.
+    btTransform startOf(const btTransform& body, const btTransform& pose, bool isDynamic) const;
+    // Records where the object ends the step.
+    void setBodyEnd(const btTransform& body) { m_bodyEnd = body; }
+    // Declares that the coming change of the place is no motion.
+    void teleport() { m_isTeleported = true; }
     // Declares that the obstacle is no longer where the last step left it, see ClothMirror. refresh() does so itself if
     // the pose or the mesh changed by anything except the motion over a step.
     void startAnew() { ++m_startRevision; }
@@ -165,11 +174,20 @@ public:
     int m_owners = 0;
     bool m_prepared = false;
     std::uint64_t m_lastSeen = 0;
-    bool m_oneSided = false;   // wanted; the next refresh() heeds it
     bool m_continued = false;  // there was a refresh() in the step before: what changed since is the motion of this one
 
 private:
-    void reload(Pipeline& pipeline, const btTransform& pose);
+    // Tells a motion in the object since the last step from a jump.
+    enum class Placing
+    {
+        Stays,
+        Moves,
+        Jumps
+    };
+
+    bool leavesPart() const;
+    bool readsElsewhere();
+    void reload(Pipeline& pipeline, const btTransform& pose, bool isElsewhere);
     void deform(Pipeline& pipeline, std::vector<float>& positions, bool samePlace);
     void drop(Pipeline& pipeline);
 
@@ -180,13 +198,21 @@ private:
     btTransform m_start = btTransform::getIdentity();  // poses of the obstacle at the last step's start and end
     btTransform m_end = btTransform::getIdentity();
     btTransform m_bodyEnd = btTransform(btMatrix3x3(0, 0, 0, 0, 0, 0, 0, 0, 0));  // see setBodyEnd(); no pose before
-    btTransform m_place = btTransform::getIdentity();
+    btTransform m_place = btTransform::getIdentity(), m_placeBefore = m_place;    // in the object, see place()
+    Placing m_placing = Placing::Stays;
+    std::uint64_t m_placedStep = 0;
+    bool m_isTeleported = false, m_movesInCompound = false;
     std::uint64_t m_startRevision = 0, m_positionRevision = 0;
     std::unique_ptr<MeshProbe> m_before;  // probe of a mesh whose vertices moved
     std::vector<float> m_positions;       // its positions in the pipeline
     float m_mostMotion = 0;               // m
     std::uint64_t m_deformedStep = 0;
     std::uint64_t m_signature = 0, m_topologyHash = 0, m_positionHash = 0;
+    ReadPart m_part;
+    std::vector<SurfaceBox> m_wanted;  // in the coming or current step
+    std::uint64_t m_sampledStep = 0;
+    bool m_isTooLarge = false;
+    bool m_oneSided = false;  // wanted; the next refresh() heeds it
     bool m_isMovable = false;
     bool m_heldOneSided = false;  // by the pipeline
     bool m_read = false;          // the pipeline has what the shape had when it was last read

@@ -5,6 +5,7 @@
 #include "BulletCollision/CollisionShapes/btCompoundShape.h"
 #include "LinearMath/btAabbUtil2.h"
 #include "bullet_plugin/adapter/collision/body_contacts.h"
+#include "bullet_plugin/adapter/mirrors/surface_reader.h"
 #include "bullet_plugin/adapter/motion/motion_bounds.h"
 #include "bullet_plugin/adapter/vectors.h"
 
@@ -24,6 +25,14 @@ struct Bounds
 // object that has gone, and a compound makes pairs of the children that meet the bounds alone.
 bool isMissed(const btCollisionShape& shape, const btTransform& pose, const Bounds& nodes, const Bounds& bounds)
 {
+    if (isSurfaceShape(shape))
+    {
+        // The cells around the bounds were read, too.
+        SurfaceBox read = {bounds.m_low, bounds.m_high};
+        read.grow(read.slack());
+        const SurfaceBox there = {nodes.m_low, nodes.m_high};
+        return surfaceMeets(shape, pose, there, 0) && !read.contains(there);
+    }
     if (!shape.isCompound())
     {
         Bounds own;

@@ -27,6 +27,9 @@ struct Extent
     bool empty() const { return m_low.x() > m_high.x(); }
     bool meets(const StepObstacle& obstacle, btScalar reach) const
     {
+        const btCollisionShape& shape = *obstacle.m_object->getCollisionShape();
+        if (isSurfaceShape(shape))
+            return surfaceMeets(shape, obstacle.m_object->getWorldTransform(), {m_low, m_high}, reach);
         const btVector3 margin(reach, reach, reach);
         return TestAabbAgainstAabb2(m_low - margin, m_high + margin, obstacle.m_low, obstacle.m_high);
     }
@@ -169,11 +172,9 @@ public:
     {
         const btCollisionObject* object = static_cast<const btCollisionObject*>(proxy->m_clientObject);
         if (!object || !object->getCollisionShape()) return true;
-        if (!object->isStaticOrKinematicObject() && !btRigidBody::upcast(object)) return true;
+        if (!object->isStaticOrKinematicObject() && !btRigidBody::upcast(object) && !isLink(*object)) return true;
         const btCollisionShape& shape = *object->getCollisionShape();
-        const bool mayBeHandled =
-            isMeshShape(shape) || shape.isCompound() || (!object->isStaticOrKinematicObject() && isReadable(shape));
-        if (!mayBeHandled) return true;
+        if (!shape.isCompound() && !isReadable(shape)) return true;
         const btTransform& pose = object->getWorldTransform();
         StepObstacle obstacle;
         obstacle.m_object = object;
@@ -181,7 +182,8 @@ public:
         obstacle.m_isDynamic = !object->isStaticOrKinematicObject();
         shape.getAabb(pose, obstacle.m_low, obstacle.m_high);
         // Bullet's box of a dynamic body changes with its velocity.
-        const bool mayChange = isMeshShape(shape) && object->isStaticOrKinematicObject() && !obstacle.m_motion.moves();
+        const bool mayChange = (shape.isCompound() || isMeshShape(shape)) && object->isStaticOrKinematicObject() &&
+                               !obstacle.m_motion.moves();
         obstacle.m_change = mayChange ? changeOf(obstacle, *proxy) : btScalar(0);
         if (!obstacle.isActive() && !m_resting) return true;
         obstacle.m_reach = reachBeyondBounds(shape, m_activation);

@@ -20,15 +20,15 @@ namespace drape
 {
 class PluginState;
 
-// An object with a mesh or a compound, or a dynamic one with any shape of Drape's, as it stands in a step.
+// An object with a shape of Drape's, or with a compound, as it stands in a step.
 struct StepObstacle
 {
     const btCollisionObject* m_object;
     BodyMotion m_motion;      // from its pose to its pose where it rests
     btVector3 m_low, m_high;  // m, bounds at the pose that Bullet has of it
     btScalar m_reach;         // m, its part of the reach of contacts, as far as the bounds lack it
-    btScalar m_change;        // m, of the side of a mesh's bounds that moved most since the step before because its
-                              // vertices move; 0 where none does
+    btScalar m_change;        // m, of the side of the bounds that moved most since the step before because vertices of
+                              // a mesh or children of a compound move; 0 where none does
 
     bool m_isDynamic;  // its motion is a prediction, which other bodies may change
 

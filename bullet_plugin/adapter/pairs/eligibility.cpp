@@ -39,12 +39,17 @@ const char* reasonFromCloth(const PluginState& state, const btSoftBody& cloth)
     return reasonFromSteppedCloth(state, cloth);
 }
 
-const char* reasonFromObstacle(const btCollisionObject& obstacle, const btCollisionShape& shape)
+const char* reasonFromObstacle(const PluginState& state, const btCollisionObject& obstacle,
+                               const btCollisionShape& shape)
 {
-    const bool isDynamic = !obstacle.isStaticOrKinematicObject();
-    if (!isMeshShape(shape) && !(isDynamic && isConvexShape(shape))) return "the obstacle is not a triangle mesh shape";
-    if (isDynamic && !btRigidBody::upcast(&obstacle))
-        return "the obstacle is dynamic and no rigid body, such as a link of a multibody";
+    const bool isDynamic = !obstacle.isStaticOrKinematicObject(), isRigid = btRigidBody::upcast(&obstacle) != nullptr;
+    if (!isReadable(shape)) return "the obstacle is not a triangle mesh, plane, height field or convex shape in 3D";
+    if (isDynamic && !isRigid && !isLink(obstacle))
+        return "the obstacle is dynamic, and neither a rigid body nor a link of a multibody";
+    if (state.settings().m_surfaces == ShapeContacts::Bullet && isSurfaceShape(shape))
+        return "Settings::m_surfaces leaves planes and height fields to Bullet";
+    if (state.settings().m_staticConvex == ShapeContacts::Bullet && isConvexShape(shape) && !(isDynamic && isRigid))
+        return "Settings::m_staticConvex leaves convex shapes of other than dynamic bodies to Bullet";
     return nullptr;
 }
 
@@ -52,8 +57,8 @@ const char* reasonFromObstacle(const btCollisionObject& obstacle, const btCollis
 const char* reasonFromDynamic(const PluginState& state, const btSoftBody& cloth, const btCollisionObject& obstacle,
                               const btCollisionShape& shape)
 {
-    if (obstacle.isStaticOrKinematicObject()) return nullptr;
-    if (state.settings().m_dynamicConvex == DynamicConvex::Bullet && isConvexShape(shape))
+    if (obstacle.isStaticOrKinematicObject() || isLink(obstacle)) return nullptr;
+    if (state.settings().m_dynamicConvex == ShapeContacts::Bullet && isConvexShape(shape))
         return "Settings::m_dynamicConvex leaves convex shapes of dynamic bodies to Bullet";
     if (reasonFromSettings(state, cloth)) return "the obstacle is dynamic, and Bullet solves the soft body's links";
     return nullptr;
@@ -69,7 +74,7 @@ const char* reasonForStock(const PluginState& state, const btSoftBody& cloth, co
                            const btCollisionShape& shape)
 {
     if (const char* reason = reasonFromCloth(state, cloth)) return reason;
-    if (const char* reason = reasonFromObstacle(obstacle, shape)) return reason;
+    if (const char* reason = reasonFromObstacle(state, obstacle, shape)) return reason;
     return reasonFromDynamic(state, cloth, obstacle, shape);
 }
 
@@ -97,14 +102,19 @@ bool handlesSteppedCloth(const PluginState& state, const btSoftBody& cloth)
     return state.ready() && !reasonFromSteppedCloth(state, cloth);
 }
 
-bool stockCanTake(const btCollisionObject& obstacle, const btTransform& pose)
+bool isLink(const btCollisionObject& object)
 {
-    return pose == obstacle.getWorldTransform();
+    return object.getInternalType() == btCollisionObject::CO_FEATHERSTONE_LINK;
 }
 
-bool handlesObstacle(const btCollisionObject& obstacle, const btCollisionShape& shape)
+bool stockCanTake(const btCollisionObject& obstacle, const btCollisionShape& shape, const btTransform& pose)
 {
-    return !reasonFromObstacle(obstacle, shape);
+    return !shape.isConcave() || pose == obstacle.getWorldTransform();
+}
+
+bool handlesObstacle(const PluginState& state, const btCollisionObject& obstacle, const btCollisionShape& shape)
+{
+    return !reasonFromObstacle(state, obstacle, shape);
 }
 
 bool handlesAny(const PluginState& state, const btSoftBody& cloth, const btCollisionObject& obstacle,
@@ -119,6 +129,6 @@ bool handlesAny(const PluginState& state, const btSoftBody& cloth, const btColli
 
 bool respond(const btSoftBody& cloth, const btCollisionObject& obstacle)
 {
-    return cloth.hasContactResponse() && obstacle.hasContactResponse() && !disabledFor(cloth, obstacle);
+    return obstacle.hasContactResponse() && !disabledFor(cloth, obstacle);
 }
 }  // namespace drape

@@ -13,9 +13,12 @@ class PluginState;
 const char* reasonForStock(const PluginState& state, const btSoftBody& cloth, const btCollisionObject& obstacle,
                            const btCollisionShape& shape);
 
-// Returns whether Bullet's own algorithm finds a mesh at that pose: the object's own, or a compound child's. Bullet
-// assumes that every mesh is where its object is.
-bool stockCanTake(const btCollisionObject& obstacle, const btTransform& pose);
+// Returns whether the object is a link, or the base, of a multibody.
+bool isLink(const btCollisionObject& object);
+
+// Returns whether Bullet's own algorithm finds a shape at that pose: the object's own, or a compound child's. Bullet
+// assumes that every concave shape is where its object is.
+bool stockCanTake(const btCollisionObject& obstacle, const btCollisionShape& shape, const btTransform& pose);
 
 // Returns whether Drape handles the soft body beside an obstacle that it handles.
 bool handlesCloth(const PluginState& state, const btSoftBody& cloth);
@@ -24,13 +27,14 @@ bool handlesCloth(const PluginState& state, const btSoftBody& cloth);
 bool handlesSteppedCloth(const PluginState& state, const btSoftBody& cloth);
 
 // Returns whether Drape handles an obstacle with that shape beside cloth that it handles.
-bool handlesObstacle(const btCollisionObject& obstacle, const btCollisionShape& shape);
+bool handlesObstacle(const PluginState& state, const btCollisionObject& obstacle, const btCollisionShape& shape);
 
 // Returns whether Drape handles the cloth and any leaf of the obstacle's shape, which may be a compound.
 bool handlesAny(const PluginState& state, const btSoftBody& cloth, const btCollisionObject& obstacle,
                 const btCollisionShape& shape);
 
-// Returns whether the two respond to contact: neither ignores the other, and both have contact response.
+// Returns whether the cloth responds to contact with the obstacle: it does not ignore it, and the obstacle has contact
+// response. Bullet does not read that flag of a soft body.
 bool respond(const btSoftBody& cloth, const btCollisionObject& obstacle);
 
 // Returns why Bullet solves the body's links, null if Drape does. Contacts that Bullet finds in a step come on top.

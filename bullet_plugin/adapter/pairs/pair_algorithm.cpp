@@ -43,11 +43,14 @@ void PairAlgorithm::processCollision(const btCollisionObjectWrapper* wrapA, cons
 bool PairAlgorithm::take(btSoftBody& cloth, const btCollisionObjectWrapper& obstacleWrap)
 {
     const btCollisionObject& obstacle = *obstacleWrap.getCollisionObject();
+    const btCollisionShape& shape = *obstacleWrap.getCollisionShape();
     if (!m_state.steppingSolver(cloth)) m_state.markUnstepped(cloth);
-    if (reasonForStock(m_state, cloth, obstacle, *obstacleWrap.getCollisionShape()))
+    // Bullet's algorithm for a concave shape asks for one for the hull of each triangle.
+    const bool isPart = !obstacleWrap.m_parent && &shape != obstacle.getCollisionShape();
+    if (isPart || reasonForStock(m_state, cloth, obstacle, shape))
     {
         m_state.forget(this);
-        return !stockCanTake(obstacle, obstacleWrap.getWorldTransform());
+        return !stockCanTake(obstacle, shape, obstacleWrap.getWorldTransform());
     }
     dropStock();
     if (cloth.isActive() && respond(cloth, obstacle)) m_state.note(this, cloth, obstacleWrap);

@@ -93,6 +93,7 @@ private:
                  const btTransform& pose);
     void addIntersections(const btSoftBody& cloth, const btCollisionObject& object, const btCollisionShape& shape,
                           const btTransform& pose);
+    std::unique_ptr<MeshProbe> makeProbe(const btCollisionShape& shape, const ReadPart& part) const;
     MeshProbe* probeOf(const btCollisionShape& shape);
 
     const Plugin& m_plugin;
@@ -162,19 +163,24 @@ void Diagnosis::addPair(const btSoftBody& cloth, const btCollisionObject& object
     addIntersections(cloth, object, shape, pose);
 }
 
-MeshProbe* Diagnosis::probeOf(const btCollisionShape& shape)
+// Returns null for a mesh without triangles.
+std::unique_ptr<MeshProbe> Diagnosis::makeProbe(const btCollisionShape& shape, const ReadPart& part) const
 {
-    std::unique_ptr<MeshProbe>& probe = m_probes[&shape];
-    if (probe) return probe.get();
     WorldMesh mesh;
-    readMesh(shape, btTransform::getIdentity(), mesh);
+    readMesh(shape, btTransform::getIdentity(), part, mesh);
     if (mesh.m_triangles.empty()) return nullptr;
     MeshDescription description;
     description.m_triangles = mesh.m_triangles.data();
     description.m_triangleCount = mesh.m_triangles.size() / 3;
     description.m_positions = mesh.m_positions.data();
     description.m_vertexCount = mesh.m_positions.size() / 3;
-    probe = std::make_unique<MeshProbe>(description);
+    return std::make_unique<MeshProbe>(description);
+}
+
+MeshProbe* Diagnosis::probeOf(const btCollisionShape& shape)
+{
+    std::unique_ptr<MeshProbe>& probe = m_probes[&shape];
+    if (!probe) probe = makeProbe(shape, {{}, m_plugin.state()->triangleFilterOf(shape)});
     return probe.get();
 }
 
@@ -182,7 +188,14 @@ MeshProbe* Diagnosis::probeOf(const btCollisionShape& shape)
 void Diagnosis::addIntersections(const btSoftBody& cloth, const btCollisionObject& object,
                                  const btCollisionShape& shape, const btTransform& pose)
 {
-    MeshProbe* const probe = probeOf(shape);
+    std::unique_ptr<MeshProbe> surface;
+    if (isSurfaceShape(shape))
+    {
+        const SurfaceBox bounds = {cloth.m_bounds[0], cloth.m_bounds[1]};
+        const ReadPart part = {{bounds.in(pose)}, m_plugin.state()->triangleFilterOf(shape)};
+        if (isSurfaceReadable(shape, part.m_boxes)) surface = makeProbe(shape, part);
+    }
+    MeshProbe* const probe = isSurfaceShape(shape) ? surface.get() : probeOf(shape);
     if (!probe) return;
     const auto placeOf = [&](const btSoftBody::Node& node)
     {

@@ -2,10 +2,10 @@
 
 #include <cinttypes>
 #include <cstdio>
+#include <utility>
 
 #include "BulletCollision/CollisionDispatch/btCollisionWorld.h"
 #include "BulletCollision/CollisionShapes/btCompoundShape.h"
-#include "bullet_plugin/adapter/mirrors/mesh_reader.h"
 #include "bullet_plugin/adapter/pairs/eligibility.h"
 #include "bullet_plugin/adapter/wiring/diagnosis.h"
 #include "bullet_plugin/adapter/wiring/plugin_state.h"
@@ -32,7 +32,7 @@ std::string reasonInShape(const PluginState& state, const btSoftBody& cloth, con
         const btTransform childPose = pose * compound.getChildTransform(i);
         const std::string reason = reasonInShape(state, cloth, obstacle, *compound.getChildShape(i), childPose);
         if (reason.empty()) continue;
-        const bool nobodys = isMeshShape(*compound.getChildShape(i)) && !stockCanTake(obstacle, childPose);
+        const bool nobodys = !stockCanTake(obstacle, *compound.getChildShape(i), childPose);
         return "child " + std::to_string(i) + " of the compound: " + reason +
                (nobodys ? "; Bullet's own algorithm would assume this mesh to be where the compound is, so that it "
                           "collides with nothing"
@@ -250,6 +250,11 @@ void Plugin::updateNodeTrees(const btCollisionWorld& world)
 void Plugin::setOneSided(const btCollisionShape* shape, bool oneSided)
 {
     if (m_state) m_state->setOneSided(shape, oneSided);
+}
+
+void Plugin::setTriangleFilter(const btCollisionShape* shape, TriangleFilter filter)
+{
+    if (m_state) m_state->setTriangleFilter(shape, std::move(filter));
 }
 
 void Plugin::setSelfCollision(const btSoftBody& body, bool collides, double thickness)

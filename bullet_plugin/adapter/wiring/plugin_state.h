@@ -40,20 +40,23 @@ struct PairNote
     const btSoftBodySolver* m_solver;
     btSoftBody* m_cloth;
     ObstacleKey m_obstacle;
-    bool m_isMovable;        // else the obstacle rests at the motion's end
-    btRigidBody* m_dynamic;  // the obstacle's body if it is dynamic, else null
-    bool m_yields;           // such a body yields to the cloth
-    btTransform m_noted;     // pose of such a body at dispatch
-    btTransform m_place;     // the shape's pose in it
-    btVector3 m_velocity;    // m/s, of such a body at dispatch
-    BodyMotion m_motion;     // the shape's motion; the shape may be a compound's child
+    bool m_isMovable;  // else the obstacle rests at the motion's end
+    const btCollisionObject*
+        m_mover;                // a dynamic body or a multibody's link, which Bullet moves in the step; else null
+    btRigidBody* m_dynamic;     // the obstacle's body if it is dynamic, else null
+    bool m_yields;              // such a body yields to the cloth
+    btTransform m_noted;        // pose of the object at the step's start
+    btTransform m_place;        // the shape's pose in it
+    bool m_movesPlace = false;  // m_place changes in the step
+    btVector3 m_velocity;       // m/s, of a dynamic body at dispatch
+    BodyMotion m_motion;        // the shape's motion; the shape may be a compound's child
     btScalar m_thickness;
 
-    // Ends the motion of a dynamic obstacle's shape where the body stands.
+    // Ends the motion of what Bullet moves where it stands.
     void endMotion()
     {
-        const btTransform& pose = m_dynamic->getWorldTransform();
-        m_motion.m_end = pose == m_noted ? m_motion.m_start : pose * m_place;
+        const btTransform& pose = m_mover->getWorldTransform();
+        m_motion.m_end = pose == m_noted && !m_movesPlace ? m_motion.m_start : pose * m_place;
     }
 };
 
@@ -115,6 +118,8 @@ public:
 
     void note(const void* owner, btSoftBody& cloth, const btCollisionObjectWrapper& obstacle);
     void forget(const void* owner);
+    // Forgets the algorithm's pair in the coming step alone.
+    void forgetNote(const void* owner);
     // Makes the object's mirrors, those of a compound's children, and uploads them to the device. They are owned as if
     // by an algorithm until release().
     void prepare(const btCollisionObject* const* objects, int count);
@@ -132,6 +137,9 @@ public:
     bool movedAlong(const std::vector<btSoftBody*>& bodies, const btCollisionObject& object, const btTransform& map,
                     btScalar slack);
     void setOneSided(const btCollisionShape* shape, bool oneSided);
+    void setTriangleFilter(const btCollisionShape* shape, TriangleFilter filter);
+    // Returns null if the shape has none.
+    const TriangleFilter* triangleFilterOf(const btCollisionShape& shape) const;
     void dropNotes(const btSoftBodySolver* solver);
     // Takes the notes of the given cloths, which are sorted by address. Omits obstacles whose noted shape is gone.
     std::vector<PairNote> takeNotes(const btSoftBodySolver* solver, const std::vector<const btSoftBody*>& cloths);
@@ -175,6 +183,7 @@ private:
     ClothMirror* findCloth(const btSoftBody* body);
     ObstacleMirror* findObstacle(const ObstacleKey& key);
     void adopt(const PairNote& note);
+    void settleMotion(PairNote& note);
     void disown(const Owned& owned);
     template <class Drops>
     void dropNotesIf(const Drops& drops);
@@ -206,6 +215,7 @@ private:
     std::unordered_map<const btSoftBody*, ClothMirror> m_cloths;
     std::unordered_map<ObstacleKey, ObstacleMirror, ObstacleKeyHash> m_obstacles;
     std::unordered_set<const btCollisionShape*> m_oneSided;  // compared, never followed
+    std::unordered_map<const btCollisionShape*, TriangleFilter> m_filters;
     std::uint64_t m_step = 0;
 };
 }  // namespace drape

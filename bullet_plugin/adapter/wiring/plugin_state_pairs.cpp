@@ -25,6 +25,15 @@ std::uint64_t childOf(const btCollisionObjectWrapper& wrap)
     return child;
 }
 
+// Returns the pose of the wrapped shape in its object.
+btTransform placeOf(const btCollisionObjectWrapper& wrap)
+{
+    const btCollisionObjectWrapper* const parent = wrap.m_parent;
+    if (!parent || !parent->getCollisionShape()->isCompound()) return btTransform::getIdentity();
+    const auto& compound = static_cast<const btCompoundShape&>(*parent->getCollisionShape());
+    return placeOf(*parent) * compound.getChildTransform(wrap.m_index);
+}
+
 // Checks whether objects still have the noted shapes. Actions and the tick's callback run between dispatch and solve,
 // and may change an object's shape or a compound's children. Compares addresses.
 class PresentShapes
@@ -73,15 +82,33 @@ bool isUnpaired(const Mirror& mirror)
     return mirror.m_owners == int(mirror.m_prepared);
 }
 
-// Returns the motion of the object's shape, or of a compound's child.
-BodyMotion motionOfShape(const btCollisionObjectWrapper& wrap, KinematicMotions& motions)
+// Returns the motion of the object's shape, or of a compound's child, for that motion of the object.
+BodyMotion motionOfShape(const btCollisionObjectWrapper& wrap, const BodyMotion& body)
 {
-    const BodyMotion body = motions.observe(*wrap.getCollisionObject());
     const btTransform& own = wrap.getCollisionObject()->getWorldTransform();
     const btTransform& pose = wrap.getWorldTransform();
     if (!body.moves() && body.m_end == own) return BodyMotion{pose, pose};
     const btTransform child = own.inverse() * pose;
     return BodyMotion{body.m_start * child, body.m_end == own ? pose : body.m_end * child};
+}
+
+// Returns the cloth's bounds, which cover its motion, with room for nodes that links pull off their paths.
+SurfaceBox clothBox(const btSoftBody& cloth)
+{
+    SurfaceBox box = {cloth.m_bounds[0], cloth.m_bounds[1]};
+    box.grow(box.slack());
+    return box;
+}
+
+// Returns whether the obstacle is a plane that the cloth does not come near in the step. Bullet makes a pair of every
+// plane and cloth of a world.
+bool isFarSurface(const PairNote& note, const btCollisionShape& shape, btScalar activation)
+{
+    if (!isSurfaceShape(shape)) return false;
+    const SurfaceBox cloth = clothBox(*note.m_cloth);
+    const btScalar reach = note.m_thickness * (1 + activation);
+    return !surfaceMeets(shape, note.m_motion.m_start, cloth, reach) &&
+           !surfaceMeets(shape, note.m_motion.m_end, cloth, reach);
 }
 }  // namespace
 
@@ -95,14 +122,21 @@ void PluginState::note(const void* owner, btSoftBody& cloth, const btCollisionOb
     btCollisionObject& object = *const_cast<btCollisionObject*>(obstacle.getCollisionObject());
     const btTransform& pose = obstacle.getWorldTransform();
     note.m_isMovable = !object.isStaticObject();
-    note.m_dynamic = object.isStaticOrKinematicObject() ? nullptr : btRigidBody::upcast(&object);
+    note.m_mover = object.isStaticOrKinematicObject() ? nullptr : &object;
+    note.m_dynamic = note.m_mover ? btRigidBody::upcast(&object) : nullptr;
     note.m_yields = note.m_dynamic != nullptr;
     note.m_noted = object.getWorldTransform();
     note.m_velocity = note.m_dynamic ? note.m_dynamic->getLinearVelocity() : btVector3(0, 0, 0);
-    note.m_place = note.m_noted == pose ? btTransform::getIdentity() : note.m_noted.inverse() * pose;
-    note.m_motion =
-        object.isKinematicObject() ? motionOfShape(obstacle, motionsOf(note.m_solver)) : BodyMotion{pose, pose};
+    note.m_place = placeOf(obstacle);
+    note.m_motion = BodyMotion{pose, pose};
+    if (object.isKinematicObject())
+    {
+        const BodyMotion body = motionsOf(note.m_solver).observe(object);
+        note.m_noted = body.m_start;
+        note.m_motion = motionOfShape(obstacle, body);
+    }
     note.m_thickness = thicknessOf(cloth, *obstacle.getCollisionShape());
+    if (isFarSurface(note, *obstacle.getCollisionShape(), btScalar(m_settings.m_activation))) return forgetNote(owner);
     const auto noted = m_noteOf.find(owner);
     if (noted != m_noteOf.end())
     {
@@ -132,9 +166,14 @@ void PluginState::dropNotesIf(const Drops& drops)
     m_notes.erase(m_notes.begin() + static_cast<std::ptrdiff_t>(kept), m_notes.end());
 }
 
-void PluginState::forget(const void* owner)
+void PluginState::forgetNote(const void* owner)
 {
     if (m_noteOf.count(owner) > 0) dropNotesIf([owner](const PairNote& note) { return note.m_owner == owner; });
+}
+
+void PluginState::forget(const void* owner)
+{
+    forgetNote(owner);
     const auto found = m_owned.find(owner);
     if (found == m_owned.end()) return;
     disown(found->second);
@@ -198,12 +237,13 @@ void PluginState::prepareShape(const btCollisionObjectWrapper& wrap)
         return;
     }
     const btCollisionObject& object = *wrap.getCollisionObject();
-    if (!handlesObstacle(object, shape)) return;
+    // Only the part of a surface near a cloth is read.
+    if (!handlesObstacle(*this, object, shape) || isSurfaceShape(shape)) return;
     const ObstacleKey key = {&object, &shape, childOf(wrap)};
     ObstacleMirror& obstacle = m_obstacles.try_emplace(key, key).first->second;
     if (obstacle.m_owners == 0) obstacle.requireReading();
     setPrepared(obstacle, true);
-    obstacle.m_oneSided = isOneSided(shape);
+    obstacle.beginStep(isOneSided(shape), triangleFilterOf(shape));
     obstacle.m_continued = false;
     obstacle.refresh(*m_pipeline, !object.isStaticObject(),
                      BodyMotion{wrap.getWorldTransform(), wrap.getWorldTransform()});
@@ -254,6 +294,8 @@ void PluginState::teleported(const btCollisionObject* object)
 {
     for (auto& motions : m_motions)
         motions.second.teleported(*object);
+    for (auto& entry : m_obstacles)
+        if (entry.first.m_object == object) entry.second.teleport();
     startAnew(object);
 }
 
@@ -284,6 +326,26 @@ void PluginState::setOneSided(const btCollisionShape* shape, bool oneSided)
     guarded(set, [&](const CaughtException& caught) { fail("drape::Plugin::setOneSided", caught); });
 }
 
+void PluginState::setTriangleFilter(const btCollisionShape* shape, TriangleFilter filter)
+{
+    const auto set = [&]
+    {
+        if (filter)
+            m_filters[shape] = std::move(filter);
+        else
+            m_filters.erase(shape);
+    };
+    guarded(set, [&](const CaughtException& caught) { fail("drape::Plugin::setTriangleFilter", caught); });
+    obstacleChanged(shape);
+}
+
+const TriangleFilter* PluginState::triangleFilterOf(const btCollisionShape& shape) const
+{
+    auto found = m_filters.find(&shape);
+    if (found == m_filters.end()) found = m_filters.find(meshShapeOf(shape));
+    return found == m_filters.end() ? nullptr : &found->second;
+}
+
 void PluginState::dropNotes(const btSoftBodySolver* solver)
 {
     dropNotesIf([solver](const PairNote& note) { return note.m_solver == solver; });
@@ -303,11 +365,27 @@ std::vector<PairNote> PluginState::takeNotes(const btSoftBodySolver* solver,
     for (PairNote& note : taken)
     {
         adopt(note);
-        if (!note.m_dynamic) continue;
-        note.m_motion.m_start = obstacleMirror(note).startOf(note.m_noted, note.m_place, note.m_motion.m_start);
-        note.endMotion();
+        settleMotion(note);
     }
+    for (const PairNote& note : taken)
+        if (!note.m_dynamic) obstacleMirror(note).setBodyEnd(note.m_obstacle.m_object->getWorldTransform());
     return taken;
+}
+
+// Completes the motion of a noted pair's obstacle, and tells a surface where the cloth is.
+void PluginState::settleMotion(PairNote& note)
+{
+    ObstacleMirror& obstacle = obstacleMirror(note);
+    obstacle.place(note.m_place);
+    note.m_movesPlace = obstacle.movesPlace();
+    note.m_isMovable = note.m_isMovable || obstacle.movesInCompound();
+    note.m_motion.m_start = obstacle.startOf(note.m_noted, note.m_motion.m_start, note.m_mover != nullptr);
+    if (note.m_mover) note.endMotion();
+    if (!isSurfaceShape(*note.m_obstacle.m_shape)) return;
+    const SurfaceBox cloth = clothBox(*note.m_cloth);
+    SurfaceBox seen = cloth.in(note.m_motion.m_end);
+    seen.add(cloth.in(note.m_motion.m_start));
+    obstacle.wantAround(seen);
 }
 
 // Makes the mirrors of a pair, and counts its algorithm among their owners.
@@ -316,12 +394,15 @@ void PluginState::adopt(const PairNote& note)
     ClothMirror& cloth = m_cloths.try_emplace(note.m_cloth, note.m_cloth).first->second;
     ObstacleMirror& obstacle = m_obstacles.try_emplace(note.m_obstacle, note.m_obstacle).first->second;
     // Every solver's step counts, so that worlds which take turns are continued, too.
-    if (obstacle.m_lastSeen != m_step) obstacle.m_continued = obstacle.m_lastSeen + m_solvers.size() >= m_step;
+    if (obstacle.m_lastSeen != m_step)
+    {
+        obstacle.m_continued = obstacle.m_lastSeen + m_solvers.size() >= m_step;
+        obstacle.beginStep(isOneSided(*note.m_obstacle.m_shape), triangleFilterOf(*note.m_obstacle.m_shape));
+    }
     cloth.m_lastSeen = obstacle.m_lastSeen = m_step;
     // Uses the cloth's current position, prepared or not: the trajectory depends on it.
     if (isUnpaired(cloth)) cloth.takeUp();
     if (obstacle.m_owners == 0) obstacle.requireReading();
-    obstacle.m_oneSided = isOneSided(*note.m_obstacle.m_shape);
 
     const auto found = m_owned.find(note.m_owner);
     if (found != m_owned.end())

@@ -10,6 +10,7 @@
 // made by fork() must not use or destroy the plugin; it must end with exec() or _exit().
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -50,6 +51,10 @@ struct ClothPairInfo
     int m_nodes[2][3];              // indices of each triangle's nodes in its body's m_nodes
 };
 
+// Returns whether a triangle of a shape collides with cloth. part, triangle: indices as Bullet gives them to a
+// btTriangleCallback; in a height field 2 x or 2 x + 1, and j, for the two triangles of the cell (x, j).
+using TriangleFilter = std::function<bool(int part, int triangle)>;
+
 // Owns the device and the copies of cloths and obstacles on it.
 //
 // The thickness of a pair is the soft body's collision margin plus the mesh shape's margin, and at least 0.1 mm. Cloth
@@ -59,7 +64,8 @@ struct ClothPairInfo
 // its world transform or motion state. To teleport it, set both transforms. If only the world transform is set, a
 // change by more than the body's radius, or a right angle, can be a teleport. Drape treats it as one if cloth is
 // anchored to the body, if the app moved nodes along with it, or after teleported(). A body is at rest in its first
-// step. A change of a static object's pose, or of a child's in its compound, is a teleport.
+// step. A change of a static object's pose is a teleport. A child whose pose in its compound changes moves within the
+// step; beyond its own size or a right angle it is a teleport.
 //
 // If memory runs out, a call does what its comment says, and later calls and steps go on.
 class Plugin
@@ -187,6 +193,13 @@ public:
     // this is switched off. If memory runs out, nothing changes, and cloth stands still in the next step with
     // kStepOutOfMemory.
     void setOneSided(const btCollisionShape* shape, bool oneSided);
+
+    // Leaves out of collision those triangles of a mesh or height field for which the filter returns false: doors and
+    // holes. It is called for each triangle that is read, in the next step and whenever the shape changes; call
+    // obstacleChanged() if its answers change. Only Drape's own contacts heed it. A scaled shape has the filter of its
+    // child if it has none. Null removes it. It must not throw. The shape is remembered by its address. If memory runs
+    // out, nothing changes, and cloth stands still in the next step with kStepOutOfMemory.
+    void setTriangleFilter(const btCollisionShape* shape, TriangleFilter filter);
 
     // Returns the state shared with Drape's other classes; not for apps.
     const std::shared_ptr<PluginState>& state() const { return m_state; }

@@ -50,11 +50,11 @@ enum class SolverPlace
     Device  // the plugin's OpenCL device, if it has one
 };
 
-// Selects who finds the contacts of cloth with the convex shapes of dynamic bodies: boxes, balls, hulls.
-enum class DynamicConvex
+// Selects who finds the contacts of cloth with shapes of one kind.
+enum class ShapeContacts
 {
-    Drape,  // Drape, where it solves the cloth: no triangle of the cloth passes through
-    Bullet  // Bullet, which holds nodes alone, so that heavy or fast bodies fall through; a device may solve the cloth
+    Drape,  // Drape: no triangle of the cloth passes through
+    Bullet  // Bullet, which holds nodes alone, so that edges and fast or heavy bodies may pass
 };
 
 // Holds the choices of an app before Drape starts.
@@ -91,13 +91,20 @@ struct Settings
     // Selects where Drape's solver computes. The results do not depend on it.
     SolverPlace m_solverPlace = SolverPlace::Auto;
 
-    // Selects who finds contacts with convex shapes of dynamic bodies. Their meshes are always Drape's.
-    DynamicConvex m_dynamicConvex = DynamicConvex::Drape;
+    // Selects who finds contacts with convex shapes of dynamic bodies: boxes, balls, hulls. Drape does so where it
+    // solves the cloth, on the host; beside Bullet's contacts a device may solve it. Their meshes are always Drape's.
+    ShapeContacts m_dynamicConvex = ShapeContacts::Drape;
+
+    // Selects who finds contacts with convex shapes of static and kinematic bodies, and of links of a multibody.
+    ShapeContacts m_staticConvex = ShapeContacts::Drape;
+
+    // Selects who finds contacts with planes (btStaticPlaneShape) and height fields (btHeightfieldTerrainShape).
+    ShapeContacts m_surfaces = ShapeContacts::Drape;
 
     // Lets cloth at rest fall asleep as Bullet's rigid bodies do, and with it the bodies that lie on it. Bullet never
-    // does that in a btSoftRigidDynamicsWorld. Sleeping cloth costs nothing, and wakes when a dynamic body
-    // or a moving mesh comes near. It does not notice forces, wind, nodes or anchors that an app moves, or kinematic
-    // bodies of other shapes: call activate() then.
+    // does that in a btSoftRigidDynamicsWorld. Sleeping cloth costs nothing, and wakes when an obstacle that moves
+    // comes near, if Drape finds its contacts. It does not notice forces, wind, and nodes or anchors that an app moves:
+    // call activate() then.
     bool m_clothSleeps = false;
 
     // Number of threads, the caller's included: they solve contacts of large or many cloths, write nodes for a GPU, and
