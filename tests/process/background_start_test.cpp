@@ -11,6 +11,7 @@
 #include "scenes/shapes.h"
 #include "tests/bullet/drop_world.h"
 #include "tests/support/environment.h"
+#include "tests/support/memory.h"
 #include "tests/support/own_process.h"
 
 namespace drape::test
@@ -32,14 +33,6 @@ bool isLoaded(const std::string& library)
     for (std::string line; std::getline(maps, line);)
         if (line.find(library) != std::string::npos) return true;
     return false;
-}
-
-double residentMb()
-{
-    std::ifstream status("/proc/self/statm");
-    double size = 0, resident = 0;
-    status >> size >> resident;
-    return resident * 4096e-6;
 }
 
 // A cloth that drops onto a ball.
@@ -77,9 +70,9 @@ TEST(BackgroundStart, NoDriverIsLoadedWhereNoneIsAGpus)
         []
         {
             const ScopedVariable unnamed("DRAPE_DEVICE", nullptr);
-            const double before = residentMb();
+            const std::size_t before = residentBytes();
             const Plugin plugin;
-            EXPECT_LT(residentMb() - before, 10.0);
+            EXPECT_LT(residentBytes(), before + 10000000);
             EXPECT_TRUE(plugin.ready());
             EXPECT_FALSE(plugin.device().m_isStarting);
             EXPECT_TRUE(plugin.device().m_onHost);
