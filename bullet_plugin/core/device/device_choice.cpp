@@ -133,7 +133,8 @@ DeviceChoice chooseDevice(const Settings& settings, Error& error)
         if (settings.m_backend == Backend::OpenCl)
         {
             error.m_call = "an OpenCL device was requested, but none was found";
-            error.m_detail = whyNone + "; a driver for any CPU is PoCL (package pocl-opencl-icd)";
+            error.m_detail = whyNone;
+            if (kHasOpenCl) error.m_detail += "; a driver for any CPU is PoCL (package pocl-opencl-icd)";
         }
         return choice;
     }
