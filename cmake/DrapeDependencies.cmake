@@ -2,14 +2,15 @@
 # DRAPE_WITH_BENCHMARKS, DRAPE_WITH_TESTS, DRAPE_WITH_PYTHON and DRAPE_WITH_STUDY (ON or OFF).
 set(THREADS_PREFER_PTHREAD_FLAG ON)
 find_package(Threads REQUIRED)
-find_package(OpenCL MODULE)
-if(NOT OpenCL_FOUND)
-  message(FATAL_ERROR "OpenCL's loader or headers were not found (Debian: ocl-icd-opencl-dev opencl-headers).")
-endif()
-find_path(DRAPE_CLHPP_INCLUDE_DIR CL/opencl.hpp HINTS ${OpenCL_INCLUDE_DIRS})
-mark_as_advanced(DRAPE_CLHPP_INCLUDE_DIR)
-if(NOT DRAPE_CLHPP_INCLUDE_DIR)
-  message(FATAL_ERROR "CL/opencl.hpp was not found (Debian: opencl-clhpp-headers).")
+# Headers alone: the loader is opened at run time (core/device/opencl.h).
+if(DRAPE_OPENCL)
+  find_path(DRAPE_OPENCL_INCLUDE_DIR CL/cl.h)
+  find_path(DRAPE_CLHPP_INCLUDE_DIR CL/opencl.hpp)
+  mark_as_advanced(DRAPE_OPENCL_INCLUDE_DIR DRAPE_CLHPP_INCLUDE_DIR)
+  if(NOT DRAPE_OPENCL_INCLUDE_DIR OR NOT DRAPE_CLHPP_INCLUDE_DIR)
+    message(FATAL_ERROR "OpenCL's headers CL/cl.h and CL/opencl.hpp were not found (Debian: opencl-c-headers "
+      "opencl-clhpp-headers). -D DRAPE_OPENCL=OFF builds for the host alone.")
+  endif()
 endif()
 
 set(DRAPE_WITH_BULLET OFF)
@@ -66,7 +67,9 @@ endif()
 
 # Tests need theirs; sanitized ones run no simulated GPU.
 set(DRAPE_WITH_TESTS OFF)
-if(DRAPE_TESTS)
+if(DRAPE_TESTS AND NOT DRAPE_OPENCL)
+  message(STATUS "Without tests: they need OpenCL")
+elseif(DRAPE_TESTS)
   find_package(GTest CONFIG QUIET)
   find_program(OCLGRIND oclgrind)
   if(GTest_FOUND AND (OCLGRIND OR DRAPE_SANITIZE))
@@ -112,7 +115,9 @@ endif()
 
 # The study's tests and programs come with the project's.
 set(DRAPE_WITH_STUDY OFF)
-if(DRAPE_STUDY STREQUAL "AUTO")
+if(NOT DRAPE_OPENCL)
+  message(STATUS "Without the study: it needs OpenCL")
+elseif(DRAPE_STUDY STREQUAL "AUTO")
   if(PROJECT_IS_TOP_LEVEL AND (DRAPE_WITH_TESTS OR DRAPE_WITH_BENCHMARKS))
     set(DRAPE_WITH_STUDY ON)
   endif()

@@ -32,9 +32,12 @@ function(drape_target target)
 endfunction()
 
 # drape_uses_opencl(<target>): for code that includes core/device headers. clhpp in Debian 12 compiles only when both of
-# its version macros say 1.2.
+# its version macros say 1.2. Nothing links OpenCL's loader.
 function(drape_uses_opencl target)
-  target_compile_definitions(${target} PRIVATE
-    CL_TARGET_OPENCL_VERSION=120 CL_HPP_TARGET_OPENCL_VERSION=120 CL_HPP_MINIMUM_OPENCL_VERSION=120)
-  target_link_libraries(${target} PRIVATE OpenCL::OpenCL)
+  target_compile_definitions(${target} PRIVATE DRAPE_OPENCL=$<BOOL:${DRAPE_OPENCL}>)
+  if(DRAPE_OPENCL)
+    target_compile_definitions(${target} PRIVATE
+      CL_TARGET_OPENCL_VERSION=120 CL_HPP_TARGET_OPENCL_VERSION=120 CL_HPP_MINIMUM_OPENCL_VERSION=120)
+    target_include_directories(${target} SYSTEM PRIVATE ${DRAPE_OPENCL_INCLUDE_DIR} ${DRAPE_CLHPP_INCLUDE_DIR})
+  endif()
 endfunction()

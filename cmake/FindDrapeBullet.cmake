@@ -1,45 +1,192 @@
 # Finds Bullet with soft bodies as the target DrapeBullet::bullet. Installed with Drape: its package config uses it too.
 #
-# Components: float32 (the default) or float64, the two builds that Debian ships; float64 defines
-# BT_USE_DOUBLE_PRECISION for whoever links the target. Sets DrapeBullet_FOUND and DrapeBullet_VERSION.
-# Why not find_package(Bullet): CMake's module gives no target and ignores the version, and Debian's config file gives
-# relative paths. pkg-config is right for both builds.
+# Takes the first of these:
+# 1. the targets BulletSoftBody, BulletDynamics, BulletCollision and LinearMath of a Bullet in the app's own build;
+# 2. BulletConfig.cmake, found by Bullet_DIR, Bullet_ROOT, CMAKE_PREFIX_PATH or in the system;
+# 3. pkg-config's module bullet or bullet-float64.
+# A Bullet that the app names (1, Bullet_DIR or Bullet_ROOT) is used or refused, never replaced by the system's.
+#
+# Components: float32 (the default) or float64; float64 defines BT_USE_DOUBLE_PRECISION for whoever links the target.
+# Sets DrapeBullet_FOUND and DrapeBullet_VERSION.
+# Why not find_package(Bullet) alone: it gives no target, and Debian's config file has relative paths.
 if(NOT DrapeBullet_FIND_COMPONENTS)
   set(DrapeBullet_FIND_COMPONENTS float32)
 endif()
-list(GET DrapeBullet_FIND_COMPONENTS 0 _drape_precision)
-if(_drape_precision STREQUAL "float64")
-  set(_drape_module bullet-float64)
+
+# Sets result to float64 if the definitions are those of Bullet in double precision, else to float32.
+function(_drape_precision_of result)
+  set(${result} float32 PARENT_SCOPE)
+  if("${ARGN}" MATCHES "(^|;|D)BT_USE_DOUBLE_PRECISION(;|=|$)")
+    set(${result} float64 PARENT_SCOPE)
+  endif()
+endfunction()
+
+function(_drape_wrong_precision origin)
+  message(FATAL_ERROR "Drape is configured for Bullet in ${DrapeBullet_FIND_COMPONENTS}, but ${origin} is in the other "
+    "precision. Configure Drape with the DRAPE_BULLET_DOUBLE of the app's Bullet.")
+endfunction()
+
+# The app's own targets. Bullet's CMake files give them no include folders and no link dependencies.
+function(_drape_bullet_from_targets)
+  foreach(library BulletSoftBody BulletDynamics BulletCollision LinearMath)
+    if(NOT TARGET ${library})
+      message(FATAL_ERROR "The app builds Bullet, but not its target ${library}, which Drape needs.")
+    endif()
+    get_target_property(own ${library} COMPILE_DEFINITIONS)
+    get_target_property(interface ${library} INTERFACE_COMPILE_DEFINITIONS)
+    list(APPEND definitions ${own} ${interface})
+  endforeach()
+  get_target_property(includes BulletSoftBody INTERFACE_INCLUDE_DIRECTORIES)
+  get_target_property(source BulletSoftBody SOURCE_DIR)
+  if(source)
+    get_directory_property(of_directory DIRECTORY ${source} COMPILE_DEFINITIONS)
+    list(APPEND definitions ${of_directory})
+    get_filename_component(source ${source} DIRECTORY)
+  endif()
+  _drape_precision_of(precision ${definitions})
+  if(NOT precision STREQUAL DrapeBullet_FIND_COMPONENTS)
+    _drape_wrong_precision("the app's target BulletSoftBody")
+  endif()
+  # Definitions that change Bullet's classes, such as BT_THREADSAFE.
+  list(FILTER definitions INCLUDE REGEX "^BT_")
+  list(REMOVE_DUPLICATES definitions)
+  set(DrapeBullet_DEFINITIONS ${definitions} PARENT_SCOPE)
+  set(DrapeBullet_LIBRARIES BulletSoftBody BulletDynamics BulletCollision LinearMath PARENT_SCOPE)
+  if(NOT includes)
+    set(includes ${source})
+  endif()
+  set(DrapeBullet_INCLUDE_DIRS ${includes} PARENT_SCOPE)
+endfunction()
+
+# A Bullet that is installed with its config file.
+function(_drape_bullet_from_config)
+  # Bullet_DIR in the cache is the app's unless this function has written it.
+  set(named FALSE)
+  set(roots ${Bullet_ROOT} $ENV{Bullet_ROOT})
+  if(roots OR (Bullet_DIR AND NOT Bullet_DIR STREQUAL "${_DRAPE_BULLET_DIR}"))
+    set(named TRUE)
+  endif()
+  if(roots)
+    set(roots PATHS ${roots} NO_DEFAULT_PATH)
+  endif()
+  set(configs BulletConfig.cmake)
+  if(DrapeBullet_FIND_COMPONENTS STREQUAL "float64")
+    set(configs BulletConfig-float64.cmake BulletConfig.cmake)
+  endif()
+  find_package(Bullet QUIET CONFIG CONFIGS ${configs} ${roots})
+  if(NOT Bullet_FOUND)
+    if(named)
+      message(FATAL_ERROR "Bullet_DIR or Bullet_ROOT leads to no BulletConfig.cmake.")
+    endif()
+    return()
+  endif()
+  if(NOT named)
+    set(_DRAPE_BULLET_DIR "${Bullet_DIR}" CACHE INTERNAL "Bullet_DIR as Drape found it")
+  endif()
+  _drape_precision_of(precision ${BULLET_DEFINITIONS})
+  if(NOT precision STREQUAL DrapeBullet_FIND_COMPONENTS)
+    if(named)
+      _drape_wrong_precision("the Bullet in ${Bullet_DIR}")
+    endif()
+    return()
+  endif()
+  foreach(name INCLUDE_DIRS LIBRARY_DIRS)
+    set(${name} "")
+    foreach(folder IN LISTS BULLET_${name})
+      get_filename_component(folder "${folder}" ABSOLUTE BASE_DIR "${BULLET_ROOT_DIR}")
+      list(APPEND ${name} ${folder})
+    endforeach()
+  endforeach()
+  set(libraries "")
+  foreach(part BulletSoftBody BulletDynamics BulletCollision LinearMath)  # in the order of static linking
+    set(entries ${BULLET_LIBRARIES})
+    list(FILTER entries INCLUDE REGEX "(^|[/:])(lib)?${part}([-_.].*)?$")
+    if(NOT entries)
+      return()
+    endif()
+    list(GET entries 0 entry)
+    if(NOT TARGET ${entry} AND NOT EXISTS ${entry})
+      find_library(DrapeBullet_${precision}_${part} NAMES ${entry} PATHS ${LIBRARY_DIRS} NO_DEFAULT_PATH)
+      mark_as_advanced(DrapeBullet_${precision}_${part})
+      set(entry ${DrapeBullet_${precision}_${part}})
+    endif()
+    if(NOT entry)
+      return()
+    endif()
+    list(APPEND libraries ${entry})
+  endforeach()
+  set(DrapeBullet_LIBRARIES ${libraries} PARENT_SCOPE)
+  set(DrapeBullet_INCLUDE_DIRS ${INCLUDE_DIRS} PARENT_SCOPE)
+endfunction()
+
+function(_drape_bullet_from_pkgconfig)
+  set(module bullet)
+  if(DrapeBullet_FIND_COMPONENTS STREQUAL "float64")
+    set(module bullet-float64)
+  endif()
+  find_package(PkgConfig QUIET)
+  if(PKG_CONFIG_FOUND)
+    pkg_check_modules(DrapeBullet_${DrapeBullet_FIND_COMPONENTS} QUIET ${module})
+    set(DrapeBullet_LIBRARIES ${DrapeBullet_${DrapeBullet_FIND_COMPONENTS}_LINK_LIBRARIES} PARENT_SCOPE)
+    set(DrapeBullet_INCLUDE_DIRS ${DrapeBullet_${DrapeBullet_FIND_COMPONENTS}_INCLUDE_DIRS} PARENT_SCOPE)
+  endif()
+endfunction()
+
+# Stops a build in which targets of the app's own Bullet came too late to be found.
+function(_drape_check_bullet)
+  set(imported TRUE)
+  if(TARGET BulletSoftBody)
+    get_target_property(imported BulletSoftBody IMPORTED)
+  endif()
+  if(NOT imported)
+    message(FATAL_ERROR "Drape uses an installed Bullet, but the app builds its own: "
+      "add Bullet's folder before Drape's.")
+  endif()
+endfunction()
+
+set(DrapeBullet_LIBRARIES "")
+set(DrapeBullet_INCLUDE_DIRS "")
+set(DrapeBullet_DEFINITIONS "")
+if(TARGET BulletSoftBody OR TARGET BulletDynamics)
+  _drape_bullet_from_targets()
 else()
-  set(_drape_module bullet)
+  _drape_bullet_from_config()
+  if(NOT DrapeBullet_LIBRARIES)
+    _drape_bullet_from_pkgconfig()
+  endif()
+  if(NOT CMAKE_VERSION VERSION_LESS 3.19)
+    cmake_language(DEFER DIRECTORY ${CMAKE_SOURCE_DIR} CALL _drape_check_bullet)
+  endif()
 endif()
 
-find_package(PkgConfig QUIET)
-if(PKG_CONFIG_FOUND)
-  pkg_check_modules(DrapeBullet_${_drape_precision} QUIET ${_drape_module})
-endif()
-set(DrapeBullet_VERSION ${DrapeBullet_${_drape_precision}_VERSION})
-set(DrapeBullet_LIBRARIES ${DrapeBullet_${_drape_precision}_LINK_LIBRARIES})
-find_path(DrapeBullet_INCLUDE_DIR BulletSoftBody/btSoftBody.h
-  HINTS ${DrapeBullet_${_drape_precision}_INCLUDE_DIRS} PATH_SUFFIXES bullet)
-mark_as_advanced(DrapeBullet_INCLUDE_DIR)
-if(DrapeBullet_LIBRARIES)
-  set(DrapeBullet_${_drape_precision}_FOUND TRUE)
-endif()
+set(DrapeBullet_VERSION "")
+set(DrapeBullet_INCLUDE_DIR "")
+foreach(_drape_folder IN LISTS DrapeBullet_INCLUDE_DIRS)
+  if(NOT DrapeBullet_INCLUDE_DIR AND EXISTS "${_drape_folder}/LinearMath/btScalar.h")
+    set(DrapeBullet_INCLUDE_DIR "${_drape_folder}")
+    file(STRINGS "${_drape_folder}/LinearMath/btScalar.h" _drape_version REGEX "#define BT_BULLET_VERSION [0-9]+")
+    string(REGEX REPLACE ".*[ \t]([0-9]+)([0-9][0-9])[^0-9]*$" "\\1.\\2" DrapeBullet_VERSION "${_drape_version}")
+  endif()
+endforeach()
+set(DrapeBullet_${DrapeBullet_FIND_COMPONENTS}_FOUND TRUE)
 
 include(FindPackageHandleStandardArgs)
 find_package_handle_standard_args(DrapeBullet
   REQUIRED_VARS DrapeBullet_LIBRARIES DrapeBullet_INCLUDE_DIR VERSION_VAR DrapeBullet_VERSION HANDLE_COMPONENTS
-  REASON_FAILURE_MESSAGE "pkg-config finds no ${_drape_module} (Debian: libbullet-dev pkgconf)")
+  REASON_FAILURE_MESSAGE
+    "no target BulletSoftBody, BulletConfig.cmake or pkg-config module (Debian: libbullet-dev pkgconf)")
 
 if(DrapeBullet_FOUND AND NOT TARGET DrapeBullet::bullet)
-  add_library(DrapeBullet::bullet INTERFACE IMPORTED)
-  set_target_properties(DrapeBullet::bullet PROPERTIES
-    INTERFACE_INCLUDE_DIRECTORIES ${DrapeBullet_INCLUDE_DIR}
-    INTERFACE_LINK_LIBRARIES "${DrapeBullet_LIBRARIES}")
-  if(_drape_precision STREQUAL "float64")
-    set_target_properties(DrapeBullet::bullet PROPERTIES INTERFACE_COMPILE_DEFINITIONS BT_USE_DOUBLE_PRECISION)
+  # Global: an app that adds Drape as a folder links it from its own.
+  add_library(DrapeBullet::bullet INTERFACE IMPORTED GLOBAL)
+  if(DrapeBullet_FIND_COMPONENTS STREQUAL "float64")
+    list(APPEND DrapeBullet_DEFINITIONS BT_USE_DOUBLE_PRECISION)
   endif()
+  list(REMOVE_DUPLICATES DrapeBullet_DEFINITIONS)
+  set_target_properties(DrapeBullet::bullet PROPERTIES
+    INTERFACE_INCLUDE_DIRECTORIES "${DrapeBullet_INCLUDE_DIR}"
+    INTERFACE_LINK_LIBRARIES "${DrapeBullet_LIBRARIES}"
+    INTERFACE_COMPILE_DEFINITIONS "${DrapeBullet_DEFINITIONS}")
 endif()
-unset(_drape_module)
-unset(_drape_precision)
+unset(_drape_folder)
+unset(_drape_version)

@@ -10,9 +10,9 @@ packages=(
   # build
   g++ cmake make ninja-build pkgconf
   # library
-  libbullet-dev ocl-icd-opencl-dev opencl-c-headers opencl-clhpp-headers zlib1g-dev nlohmann-json3-dev
-  # an OpenCL device on any machine
-  pocl-opencl-icd
+  libbullet-dev opencl-c-headers opencl-clhpp-headers zlib1g-dev nlohmann-json3-dev
+  # an OpenCL device on any machine, and the loader
+  pocl-opencl-icd ocl-icd-libopencl1
   # tools: arguments, PNG, WebP, rays, replay pages; exact arithmetic for the independent check
   libcli11-dev libpng-dev libwebp-dev libembree-dev libjs-three libgmp-dev
   # data: the bunny

@@ -40,11 +40,17 @@ done
 
 bash cmake/install_packages.sh
 bash cmake/build_preset.sh release all study study_dop6 drape_test_study
+bash cmake/build_preset.sh host
 
 failed=0
 source tests/reference_data.sh
 ctest --test-dir build/release --output-on-failure --no-tests=error --label-regex '^slow$' \
   --parallel "$(nproc)" || failed=1
+# The build without OpenCL, used by other projects.
+libdir=$(sed -n 's/^CMAKE_INSTALL_LIBDIR:PATH=//p' build/host/CMakeCache.txt)
+cmake -D BUILD="$PWD/build/host" -D SOURCE="$PWD/examples/consumer" -D DOCUMENTS="$PWD" \
+  -D WORK="$PWD/build/host/consumer" -D LIBDIR="$libdir" -D COMPILER=c++ -D SANITIZE=OFF -D DOUBLE=OFF \
+  -P tests/install_consumer.cmake || failed=1
 worlds() {
   echo "== drape_worlds $*"
   build/release/bin/drape_worlds --jobs "$jobs" "$@" || failed=1

@@ -14,7 +14,9 @@ Settings CommonOptions::settings() const
     Settings settings;
     settings.m_device = m_device;
     settings.m_crossover = 0;  // a method runs on the back end of its name, however small the scene
-    settings.m_backend = m_backend == "host" ? Backend::Host : m_backend == "opencl" ? Backend::OpenCl : Backend::Auto;
+    settings.m_backend = m_backend == "host" ? Backend::Host : Backend::OpenCl;
+    // Without a device, the automatic choice runs on the host or names what is missing.
+    if (m_backend == "auto" && !whyNoDevice(settings).empty()) settings.m_backend = Backend::Auto;
     return settings;
 }
 

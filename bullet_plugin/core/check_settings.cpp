@@ -27,7 +27,7 @@ bool checkSettings(const Settings& settings, Error& error)
 {
     // NaN is in no range.
     const Field fields[] = {
-        choice("Settings::m_backend", settings.m_backend, Backend::Host),
+        choice("Settings::m_backend", settings.m_backend, Backend::ByCost),
         choice("Settings::m_mode", settings.m_mode, ContactMode::Automatic),
         choice("Settings::m_solver", settings.m_solver, Solver::Bullet),
         choice("Settings::m_solverPlace", settings.m_solverPlace, SolverPlace::Device),

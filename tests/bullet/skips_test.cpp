@@ -209,8 +209,10 @@ TEST_P(Skips, TheDeviceWhereTheSceneIsTooSmallForIt)
     if (GetParam().m_device > 0) GTEST_SKIP() << "cost decides about the first device only";
     const ScopedVariable noDevice("DRAPE_DEVICE", nullptr);
     Settings settings;
+    settings.m_backend = Backend::ByCost;
     settings.m_crossover = 16000;
     SkipWorld byCost(settings), fixed(GetParam().m_settings);
+    byCost.m_plugin.awaitDevice();
     std::size_t onHost = 0, onDevice = 0;
     SkipWorld* worlds[2] = {&byCost, &fixed};
     int steps = 0;

@@ -264,7 +264,15 @@ TEST(StockWithoutDevice, AFailingDeviceThatWasNotRequestedLeavesTheHost)
             const ScopedVariable unnamed("DRAPE_DEVICE", nullptr), broken("POCL_EXTRA_BUILD_FLAGS", "-Dvec3Sub=@");
             Settings settings;
             settings.m_cacheFolder = "none";
+            settings.m_backend = Backend::ByCost;
+            std::vector<std::string> lines;
+            settings.m_log = [&lines](const char* line) { lines.push_back(line); };
             Plugin plugin(settings);
+            EXPECT_TRUE(lines.empty());
+            plugin.awaitDevice();
+            ASSERT_EQ(lines.size(), 1u);
+            EXPECT_EQ(lines[0].find("the host computes: building "), 0u) << lines[0];
+            EXPECT_EQ(lines[0].find('\n'), std::string::npos) << lines[0];
             EXPECT_TRUE(plugin.ready());
             EXPECT_NE(plugin.error().find(".cl"), std::string::npos) << plugin.error();
             EXPECT_NE(plugin.report().find("the host, since " + devices[0].m_name + " failed"), std::string::npos)

@@ -30,10 +30,11 @@ namespace
 {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// Returns automatic settings: the device is the first one.
+// The device is the first one.
 Settings byCost(double crossover)
 {
     Settings settings;
+    settings.m_backend = Backend::ByCost;
     settings.m_crossover = crossover;
     return settings;
 }
@@ -141,6 +142,36 @@ TEST_P(BackendMove, ContactsDoNotDependOnMoves)
     }
     EXPECT_GT(moves, 8);
     EXPECT_GT(contacts, 10000u);
+}
+
+// Cloths lie on a ball before the device is there and while it is taken.
+TEST_P(BackendMove, AStartInTheBackgroundChangesNoContact)
+{
+    Settings host;
+    host.m_backend = Backend::Host;
+    Error error;
+    const std::unique_ptr<Pipeline> moving = Pipeline::create(byCost(0), error), onHost = makePipeline(host);
+    ASSERT_TRUE(moving && onHost) << error.text();
+    EXPECT_TRUE(moving->deviceReport().m_isStarting);
+    EXPECT_TRUE(moving->deviceReport().m_onHost);
+    LiveScene scene({moving.get(), onHost.get()}, 1250, true);
+    std::size_t contacts = 0;
+    for (int step = 0; step < 40; ++step)
+    {
+        if (step == 20) moving->endStart();
+        scene.nextStep();
+        const std::vector<Contact> found = runStep(*moving), expected = runStep(*onHost);
+        ASSERT_TRUE(sameBytes(found, expected)) << "step " << step << ": " << difference(found, expected);
+        if (!moving->statistics().m_skipped)
+        {
+            EXPECT_EQ(moving->statistics().m_onHost, step < 20) << "step " << step;
+        }
+        contacts += found.size();
+    }
+    EXPECT_GT(contacts, 1000u);
+    EXPECT_FALSE(moving->deviceReport().m_isStarting);
+    EXPECT_EQ(moving->deviceReport().m_device.m_name, listDevices()[0].m_name);
+    EXPECT_GT(moving->deviceReport().m_buildMs, 0);
 }
 
 TEST_P(BackendMove, AGrowingSceneMovesOnceAndTheReportSaysWhy)

@@ -122,12 +122,13 @@ TEST_P(DeviceFailureTest, OneThatNobodyAskedForLeavesTheHost)
         [&]
         {
             const ScopedVariable unnamed("DRAPE_DEVICE", nullptr), broken(kBuildFlags, kBroken);
-            m_settings.m_backend = Backend::Auto;
+            m_settings.m_backend = Backend::ByCost;
             m_settings.m_device.clear();
             Error error;
             const std::unique_ptr<Pipeline> pipeline = Pipeline::create(m_settings, error);
             ASSERT_TRUE(pipeline) << error.text();
             EXPECT_FALSE(error.failed());
+            pipeline->endStart();
             expectHostGoesOn(*pipeline);
             const MeshId cloth = pipeline->addCloth(triangle(kAbove)),
                          obstacle = pipeline->addObstacle(triangle(kBelow));
@@ -146,7 +147,7 @@ TEST_P(DeviceFailureTest, QueriesGoOnOnTheHostLikewise)
             Error error;
             EXPECT_FALSE(Queries::create(m_settings, error));
             EXPECT_NE(error.text().find(".cl"), std::string::npos) << error.text();
-            m_settings.m_backend = Backend::Auto;
+            m_settings.m_backend = Backend::ByCost;
             m_settings.m_device.clear();
             const std::unique_ptr<Queries> queries = Queries::create(m_settings, error);
             ASSERT_TRUE(queries) << error.text();

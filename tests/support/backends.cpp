@@ -75,6 +75,7 @@ std::unique_ptr<Pipeline> makePipeline(const Settings& settings)
     Error error;
     std::unique_ptr<Pipeline> pipeline = Pipeline::create(settings, error);
     if (!pipeline) ADD_FAILURE() << error.text();
+    if (pipeline) pipeline->endStart();
     return pipeline;
 }
 

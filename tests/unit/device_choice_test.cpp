@@ -79,6 +79,7 @@ TEST(DeviceChoice, ACrossoverThatIsNoNumberIsNamedWhereCostDecides)
     const DeviceVariable none(nullptr);
     const ScopedVariable crossover("DRAPE_CROSSOVER", "many");
     Settings settings;
+    settings.m_backend = Backend::ByCost;
     Error error;
     ASSERT_TRUE(chooseDevice(settings, error).m_byCost);
     EXPECT_NE(whyNoDevice(settings).find("DRAPE_CROSSOVER is \"many\""), std::string::npos) << whyNoDevice(settings);
@@ -125,11 +126,23 @@ TEST_P(DeviceChoiceTest, OptionWinsOverVariable)
     EXPECT_FALSE(error.failed()) << error.text();
 }
 
-TEST_P(DeviceChoiceTest, AutomaticChoiceTakesTheFirst)
+TEST_P(DeviceChoiceTest, TheAutomaticDeviceIsAGpu)
 {
     const DeviceVariable none(nullptr);
     Error error;
     const DeviceChoice choice = chooseDevice(Settings(), error);
+    EXPECT_FALSE(error.failed()) << error.text();
+    EXPECT_EQ(choice.m_onHost, !listDevices()[0].m_isGpu) << choice.m_reason;
+    EXPECT_FALSE(choice.m_reason.empty());
+}
+
+TEST_P(DeviceChoiceTest, CostDecidesAboutTheFirst)
+{
+    const DeviceVariable none(nullptr);
+    Error error;
+    Settings settings;
+    settings.m_backend = Backend::ByCost;
+    const DeviceChoice choice = chooseDevice(settings, error);
     EXPECT_FALSE(choice.m_onHost);
     EXPECT_EQ(choice.m_index, 0u);
     EXPECT_FALSE(choice.m_reason.empty());

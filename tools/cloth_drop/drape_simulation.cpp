@@ -21,6 +21,7 @@ public:
           m_world(std::make_unique<CollisionConfiguration>(*m_plugin), std::unique_ptr<btSoftBodySolver>(m_solver)),
           m_dt(scene.m_dt)
     {
+        m_plugin->awaitDevice();
         m_world.addMeshObstacle(scene);
         m_world.addCloths(scene, false);
         for (std::size_t i = 0; scene.m_self && i < scene.m_layers; ++i)

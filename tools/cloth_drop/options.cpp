@@ -112,8 +112,9 @@ void addBackendOptions(CLI::App& app, Options& options, std::string& mode)
 {
     acceptOnly(app.add_option(
                    "--backend", options.m_backend,
-                   "auto: a GPU, else any OpenCL device, but the host if it is faster; bullet: Bullet's own collision"),
-               {"auto", "opencl", "host", "bullet"});
+                   "auto: a GPU, but the host if it is faster; cost: the same with any OpenCL device; bullet: Bullet's "
+                   "own collision"),
+               {"auto", "opencl", "host", "cost", "bullet"});
     acceptOnly(app.add_option("--mode", options.m_contactMode, "how Drape treats motion within a step"),
                {"discrete", "continuous", "automatic"});
     acceptOnly(app.add_option("--solver", options.m_solver,

@@ -11,7 +11,10 @@ namespace drape
 {
 bool deviceSettings(const std::string& backend, const std::string& device, Settings& settings, std::string& error)
 {
-    settings.m_backend = backend == "host" ? Backend::Host : backend == "opencl" ? Backend::OpenCl : Backend::Auto;
+    settings.m_backend = backend == "host"     ? Backend::Host
+                         : backend == "opencl" ? Backend::OpenCl
+                         : backend == "cost"   ? Backend::ByCost
+                                               : Backend::Auto;
     settings.m_device = device;
     if (settings.m_backend == Backend::Host && !device.empty() && strcasecmp(device.c_str(), "host") != 0)
         error = "--device " + device + " contradicts --backend host";

@@ -103,7 +103,7 @@ bool parseOptions(int argc, const char* const* argv, Options& options, int& exit
     options.m_tolerance = defaultCcdSettings().m_tolerance;
     app.option_defaults()->always_capture_default();
     app.fallthrough();
-    acceptOnly(app.add_option("--backend", options.m_backend, "auto: a GPU, else any OpenCL device, else the host"),
+    acceptOnly(app.add_option("--backend", options.m_backend, "auto: a GPU, else the host"),
                {"auto", "opencl", "host"});
     app.add_option("--device", options.m_device, "part of an OpenCL device's or platform's name")->type_name("TEXT");
     app.add_option("--json", options.m_json, "write the answer; - is standard output")

@@ -110,6 +110,7 @@ const char* KeptBodies::keep(btSoftBody& body)
 {
     if (const char* reason = reasonForBulletsLinks(m_state, body)) return reason;
     if (const char* reason = reasonForBulletsPrediction(body)) return reason;
+    m_state.takeDevice(true);
     SolveStage* const solver = stage();
     if (!solver) return "no OpenCL device solves cloth (Settings::m_solverPlace)";
     if (body.m_anchors.size() > 0) return "the soft body has anchors";

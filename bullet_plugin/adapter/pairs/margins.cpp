@@ -11,6 +11,23 @@ namespace
 // Minimum thickness, m: both margins may be zero, but the pipeline needs a positive thickness.
 constexpr btScalar kMinThickness = btScalar(1e-4);
 
+// Maximum and minimum thickness, in mean edge lengths of the cloth.
+constexpr double kMostEdges = 4;
+constexpr double kLeastEdges = 0.005;
+
+// Returns the mean length of the body's face edges, or of its links if it has no faces.
+double meanEdgeOf(const btSoftBody& cloth)
+{
+    double sum = 0;
+    for (int i = 0; cloth.m_faces.size() == 0 && i < cloth.m_links.size(); ++i)
+        sum += double((cloth.m_links[i].m_n[0]->m_x - cloth.m_links[i].m_n[1]->m_x).length());
+    if (cloth.m_faces.size() == 0) return sum / std::max(1, cloth.m_links.size());
+    for (int f = 0; f < cloth.m_faces.size(); ++f)
+        for (int k = 0; k < 3; ++k)
+            sum += double((cloth.m_faces[f].m_n[k]->m_x - cloth.m_faces[f].m_n[(k + 1) % 3]->m_x).length());
+    return sum / std::max(1, 3 * cloth.m_faces.size());
+}
+
 btScalar largestOf(const btVector3& extent)
 {
     return std::max(extent.x(), std::max(extent.y(), extent.z()));
@@ -33,6 +50,19 @@ btScalar sizeOf(const btCollisionShape& shape)
     btVector3 low, high;
     shape.getAabb(btTransform::getIdentity(), low, high);
     return largestOf(high - low) - 2 * (shape.isConvex() ? meshMargin(shape) : shape.getMargin());
+}
+std::string edgeRemark(double thickness, double edge)
+{
+    char line[256] = "";
+    if (thickness > kMostEdges * edge)
+        std::snprintf(
+            line, sizeof(line),
+            "the thickness (%g m) is %.3g times the mean edge of the cloth (%g m); pairs grow with its square",
+            thickness, thickness / edge, edge);
+    else if (thickness < kLeastEdges * edge)
+        std::snprintf(line, sizeof(line), "the thickness (%g m) is a %.0fth of the mean edge of the cloth (%g m)",
+                      thickness, edge / thickness, edge);
+    return line;
 }
 }  // namespace
 
@@ -69,6 +99,6 @@ std::string marginRemark(const btSoftBody& cloth, const btCollisionShape& obstac
                       thickness, name, size);
         return line;
     }
-    return std::string();
+    return edgeRemark(thickness, meanEdgeOf(cloth));
 }
 }  // namespace drape

@@ -18,7 +18,8 @@ inline btScalar marginOf(const btCollisionShape& shape)
 // Returns the distance at which cloth comes to rest, m.
 btScalar thicknessOf(const btSoftBody& cloth, const btCollisionShape& obstacle);
 
-// Describes in one line a problem with the margins of a soft body and a mesh's shape: one is negative, or the
-// thickness is as large as the mesh or the cloth. Empty if there is none. O(n) in the nodes.
+// Describes in one line a problem with the margins of a soft body and a mesh's shape; empty if there is none. Problems
+// are a negative margin, and a thickness as large as the mesh or the cloth, or out of proportion to the cloth's edges.
+// O(n) in the nodes and faces.
 std::string marginRemark(const btSoftBody& cloth, const btCollisionShape& obstacle);
 }  // namespace drape

@@ -28,6 +28,7 @@ SoftBodySolver::~SoftBodySolver()
 void SoftBodySolver::predictMotion(btScalar dt)
 {
     if (!m_work) return btDefaultSoftBodySolver::predictMotion(dt);
+    const ThreadWatch::Call call = m_state->beginCall();
     const auto failed = [&](const CaughtException& caught)
     { m_state->fail("drape::SoftBodySolver::predictMotion", caught); };
     std::vector<StepObstacle> obstacles;
@@ -44,6 +45,7 @@ void SoftBodySolver::predictMotion(btScalar dt)
 void SoftBodySolver::solveConstraints(btScalar dt)
 {
     if (!m_work) return btDefaultSoftBodySolver::solveConstraints(dt);
+    const ThreadWatch::Call call = m_state->beginCall();
     const DefaultFloats floats;
     const auto failed = [&](const CaughtException& caught)
     { m_state->fail("drape::SoftBodySolver::solveConstraints", caught); };
@@ -72,6 +74,7 @@ void SoftBodySolver::updateSoftBodies()
     Stopwatch watch;
     // Bullet's function does the same on this thread if there is no state.
     if (!m_work) return btDefaultSoftBodySolver::updateSoftBodies();
+    const ThreadWatch::Call call = m_state->beginCall();
     const auto isOnHost = [this](const btSoftBody& body)
     { return body.isActive() && !m_state->m_kept.isOnDevice(body); };
     const auto sizeOf = [&](std::size_t i)

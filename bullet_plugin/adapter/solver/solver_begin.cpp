@@ -127,7 +127,7 @@ void SoftBodySolver::Work::beginStep(btScalar dt, std::vector<StepObstacle>& obs
     m_listed = false;
     m_taken.clear();
     m_state.dropNotes(&m_owner);  // notes of a dispatch that no solve followed
-    m_state.setStepped(&m_owner, m_bodies);
+    m_state.beginStep(&m_owner, m_bodies);
     if (!m_state.ready()) return listPredicted();
     m_state.m_kept.forgetRemoved(&m_owner, m_bodies);
     Stopwatch watch;

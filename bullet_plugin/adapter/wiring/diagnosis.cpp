@@ -21,10 +21,6 @@ namespace drape
 {
 namespace
 {
-// Maximum and minimum thickness, in mean edge lengths of the cloth.
-constexpr double kMostEdges = 4;
-constexpr double kLeastEdges = 0.005;
-
 template <class... Values>
 std::string format(const char* text, Values... values)
 {
@@ -38,19 +34,6 @@ bool mayCollide(const btCollisionObject& a, const btCollisionObject& b)
     const btBroadphaseProxy *const p = a.getBroadphaseHandle(), *const q = b.getBroadphaseHandle();
     return p && q && (p->m_collisionFilterGroup & q->m_collisionFilterMask) &&
            (q->m_collisionFilterGroup & p->m_collisionFilterMask);
-}
-
-// Returns the mean length of the body's face edges, or of its links if it has no faces.
-double meanEdgeOf(const btSoftBody& cloth)
-{
-    double sum = 0;
-    for (int i = 0; cloth.m_faces.size() == 0 && i < cloth.m_links.size(); ++i)
-        sum += double((cloth.m_links[i].m_n[0]->m_x - cloth.m_links[i].m_n[1]->m_x).length());
-    if (cloth.m_faces.size() == 0) return sum / std::max(1, cloth.m_links.size());
-    for (int f = 0; f < cloth.m_faces.size(); ++f)
-        for (int k = 0; k < 3; ++k)
-            sum += double((cloth.m_faces[f].m_n[k]->m_x - cloth.m_faces[f].m_n[(k + 1) % 3]->m_x).length());
-    return sum / std::max(1, 3 * cloth.m_faces.size());
 }
 
 SolidLinks solidLinksOf(const btSoftBody& cloth)
@@ -152,14 +135,6 @@ void Diagnosis::addPair(const btSoftBody& cloth, const btCollisionObject& object
         format("soft body %p and object %p: ", static_cast<const void*>(&cloth), static_cast<const void*>(&object));
     const std::string margins = marginRemark(cloth, shape);
     if (!margins.empty()) add(pair + margins);
-    const double thickness = double(thicknessOf(cloth, shape)), edge = meanEdgeOf(cloth);
-    if (thickness > kMostEdges * edge)
-        add(pair +
-            format("the thickness (%g m) is %.3g times the mean edge of the cloth (%g m); pairs grow with its square",
-                   thickness, thickness / edge, edge));
-    if (thickness < kLeastEdges * edge)
-        add(pair + format("the thickness (%g m) is a %.0fth of the mean edge of the cloth (%g m)", thickness,
-                          edge / thickness, edge));
     addIntersections(cloth, object, shape, pose);
 }
 

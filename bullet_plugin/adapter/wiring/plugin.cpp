@@ -122,6 +122,13 @@ std::string Plugin::error() const
     return textOf([&] { return m_state->error().failed() ? m_state->error().text() : std::string(); });
 }
 
+void Plugin::awaitDevice()
+{
+    if (!m_state) return;
+    guarded([&] { m_state->takeDevice(true); },
+            [&](const CaughtException& caught) { m_state->fail("drape::Plugin::awaitDevice", caught); });
+}
+
 const DeviceReport& Plugin::device() const
 {
     return m_state ? m_state->device() : noDevice();

@@ -6,11 +6,25 @@
 #include "BulletSoftBody/btSoftBodySolvers.h"
 #include "bullet_plugin/adapter/mirrors/convex_reader.h"
 #include "bullet_plugin/adapter/pairs/eligibility.h"
+#include "bullet_plugin/adapter/wiring/wiring.h"
 #include "bullet_plugin/core/scene/growing_arrays.h"
 #include "bullet_plugin/core/public_call.h"
 
 namespace drape
 {
+namespace
+{
+// Shortest time for which compiled kernels are reported, ms. Programs from a cache take less, also on a busy machine.
+constexpr double kLongBuildMs = 3000;
+
+std::string nameOf(const btSoftBody& body)
+{
+    char text[48];
+    std::snprintf(text, sizeof text, "soft body %p", static_cast<const void*>(&body));
+    return text;
+}
+}  // namespace
+
 PluginState::PluginState(const Settings& settings)
     : m_selfCollision(settings.m_solver != Solver::Bullet),
       m_settings(settings),
@@ -28,6 +42,7 @@ PluginState::PluginState(const Settings& settings)
     m_threads = m_pipeline ? m_pipeline->threads() : std::make_shared<ThreadTeam>(1);
     m_failedDevice.m_device.m_name = "none";
     m_failedDevice.m_reason = m_error.m_call;
+    tellDevice();
 }
 
 const DeviceReport& PluginState::device() const
@@ -35,16 +50,65 @@ const DeviceReport& PluginState::device() const
     return m_pipeline ? m_pipeline->deviceReport() : m_failedDevice;
 }
 
-void PluginState::log(const char* line) const
+void PluginState::log(const std::string& line) const
 {
     const CallersFloats floats;
     try
     {
-        if (m_settings.m_log) m_settings.m_log(line);
+        if (m_settings.m_log) m_settings.m_log(line.c_str());
     }
     catch (...)
     {
         // The app's function failed; the step continues.
+    }
+}
+
+ThreadWatch::Call PluginState::beginCall()
+{
+    ThreadWatch::Call call(m_calls);
+    if (call.isFirstOverlap())
+        guardedOr(false,
+                  [&]
+                  {
+                      log("two threads use one plugin at once, which is not safe: make a plugin for each thread");
+                      return true;
+                  });
+    return call;
+}
+
+void PluginState::takeDevice(bool wait)
+{
+    if (!ready() || m_mustRestart || !device().m_isStarting || !(wait || m_pipeline->isStartDone())) return;
+    m_found.keepList();
+    m_pipeline->endStart();
+    tellDevice();
+}
+
+void PluginState::tellDevice()
+{
+    const DeviceReport& report = device();
+    m_toldError = error().failed();
+    if (m_toldError)
+    {
+        const std::string detail = error().m_detail.substr(0, error().m_detail.find('\n'));
+        return log((ready() ? "the host computes: " : "Drape is off: ") + error().m_call +
+                   (detail.empty() ? "" : "; " + detail));
+    }
+    if (report.m_fromCache || report.m_buildMs < kLongBuildMs) return;
+    char time[48];
+    std::snprintf(time, sizeof time, " were compiled in %.1f s", report.m_buildMs / 1000);
+    log("the kernels for " + m_pipeline->deviceName() + time);
+}
+
+void PluginState::tellDispatchers(const btAlignedObjectArray<btSoftBody*>& bodies)
+{
+    for (int i = 0; i < bodies.size(); ++i)
+    {
+        btDispatcher* const dispatcher = bodies[i]->m_worldInfo ? bodies[i]->m_worldInfo->m_dispatcher : nullptr;
+        if (!dispatcher || !m_checkedWorlds.insert(dispatcher).second || pluginOf(*dispatcher) == this) continue;
+        log(nameOf(*bodies[i]) +
+            ": its world's dispatcher does not have this plugin's algorithm, so that Bullet's own collision handles "
+            "meshes; make the dispatcher with a drape::CollisionConfiguration, or call drape::install()");
     }
 }
 
@@ -105,8 +169,11 @@ bool PluginState::ownsSolver(const btSoftBodySolver* solver) const
     return std::find(m_solvers.begin(), m_solvers.end(), solver) != m_solvers.end();
 }
 
-void PluginState::setStepped(const btSoftBodySolver* solver, const btAlignedObjectArray<btSoftBody*>& bodies)
+void PluginState::beginStep(const btSoftBodySolver* solver, const btAlignedObjectArray<btSoftBody*>& bodies)
 {
+    takeDevice(false);
+    if (ready() && m_pipeline->deviceFailed() && !m_toldError) tellDevice();
+    tellDispatchers(bodies);
     WorldBodies& before = m_stepped[solver];
     WorldBodies stepped;
     stepped.reserve(static_cast<std::size_t>(bodies.size()));
@@ -169,6 +236,10 @@ void PluginState::updateNodeTree(btSoftBody& body)
 void PluginState::markUnstepped(const btSoftBody& body)
 {
     m_unstepped[&body] = body.getBroadphaseHandle();
+    if (ownsSolver(body.getSoftBodySolver()) || !m_checkedWorlds.insert(body.m_worldInfo).second) return;
+    log(nameOf(body) +
+        ": its world's soft body solver is not a drape::SoftBodySolver of this plugin, so that Bullet's "
+        "own collision handles meshes");
 }
 
 bool PluginState::steps(const btSoftBody& body) const

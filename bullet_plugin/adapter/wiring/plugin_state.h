@@ -25,6 +25,7 @@
 #include "bullet_plugin/adapter/mirrors/mirrors.h"
 #include "bullet_plugin/adapter/motion/node_tree.h"
 #include "bullet_plugin/adapter/pairs/pair_algorithm.h"
+#include "bullet_plugin/adapter/wiring/thread_watch.h"
 #include "bullet_plugin/core/pipeline/pipeline.h"
 #include "bullet_plugin/core/public_call.h"
 #include "bullet_plugin/core/threads/thread_team.h"
@@ -76,7 +77,12 @@ public:
     // The pipeline's; they outlive it.
     ThreadTeam& threads() { return *m_threads; }
     // Hands a line to Settings::m_log.
-    void log(const char* line) const;
+    void log(const std::string& line) const;
+    // Begins a call that uses the pipeline, and reports a second thread in one at the same time. Keep the result until
+    // the call ends.
+    ThreadWatch::Call beginCall();
+    // Takes a device that was started in the background; waits for it if `wait`. Call between steps.
+    void takeDevice(bool wait);
     // Handles an exception that ended a call at an unknown point of the pipeline's work. If memory ran out, the
     // pipeline begins anew without meshes; otherwise every pair goes to Bullet from now on.
     void fail(const char* call, const CaughtException& caught) noexcept;
@@ -98,8 +104,9 @@ public:
     void addSolver(const btSoftBodySolver* solver);
     void removeSolver(const btSoftBodySolver* solver);
     bool ownsSolver(const btSoftBodySolver* solver) const;
-    // Lists the bodies of the step that the solver begins. They stay listed until its next one.
-    void setStepped(const btSoftBodySolver* solver, const btAlignedObjectArray<btSoftBody*>& bodies);
+    // Begins a step of the solver: takes a device that has become ready, and lists the step's bodies. They stay listed
+    // until its next step.
+    void beginStep(const btSoftBodySolver* solver, const btAlignedObjectArray<btSoftBody*>& bodies);
     // Returns the solver of this plugin that stepped the body last, in the world that the body is in now; null for
     // none. A body's own solver may be another one: btSoftBody::setSoftBodySolver() does not change who steps it.
     const btSoftBodySolver* steppingSolver(const btSoftBody& body) const;
@@ -190,6 +197,10 @@ private:
     void prepareAll(const btCollisionObject* const* objects, int count);
     // Forgets all pairs and their meshes.
     void forgetScene() noexcept;
+    // Reports in the log what the pipeline says of its device.
+    void tellDevice();
+    // Reports a world of these bodies once if its dispatcher gives this plugin no pairs.
+    void tellDispatchers(const btAlignedObjectArray<btSoftBody*>& bodies);
 
     const Settings m_settings;
     std::unique_ptr<Pipeline> m_pipeline;
@@ -199,6 +210,7 @@ private:
     std::string m_failedReason = "an exception ended a call, see Plugin::error()";  // made before it is needed
     std::uint64_t m_failures = 0;
     bool m_mustRestart = false;
+    bool m_toldError = false;  // the log has the device's failure
     PairCreateFunction m_create, m_createSwapped;
     btSoftBodyConcaveCollisionAlgorithm::CreateFunc m_stockCreate;
     btSoftBodyConcaveCollisionAlgorithm::SwappedCreateFunc m_stockCreateSwapped;
@@ -217,5 +229,7 @@ private:
     std::unordered_set<const btCollisionShape*> m_oneSided;  // compared, never followed
     std::unordered_map<const btCollisionShape*, TriangleFilter> m_filters;
     std::uint64_t m_step = 0;
+    ThreadWatch m_calls;
+    std::unordered_set<const void*> m_checkedWorlds;  // dispatchers of stepped bodies and the others' worlds' data
 };
 }  // namespace drape

@@ -194,6 +194,7 @@ bool PluginState::isOneSided(const btCollisionShape& shape) const
 void PluginState::prepare(const btCollisionObject* const* objects, int count)
 {
     if (!ready()) return;
+    const ThreadWatch::Call call = beginCall();
     guarded([&] { prepareAll(objects, count); },
             [&](const CaughtException& caught) { fail("drape::Plugin::prepare", caught); });
 }

@@ -3,20 +3,17 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <limits>
+#include <system_error>
 
 #include "bullet_plugin/core/backends/device_backend.h"
 #include "bullet_plugin/core/backends/host_backend.h"
-#include "bullet_plugin/core/stopwatch.h"
-#include "crossover_ladder.h"
+#include "device_start.h"
 #include "expected_pairs.h"
 
 namespace drape
 {
 namespace
 {
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
 // Minimum nodes for each thread of the host, in all cloths, for solving them on a GPU. A step takes it long however few
 // nodes there are (docs/decisions/, 021).
 constexpr std::size_t kLeastDeviceNodes = 8192;
@@ -52,6 +49,18 @@ std::string reasonByCost(const DeviceReport& report, const std::string& device)
 }
 }  // namespace
 
+struct BackendSelector::Start
+{
+    explicit Start(Settings settings)
+        : m_work([this, settings = std::move(settings)](const StopFlag& stop)
+                 { m_started = startDevice(settings, stop); })
+    {
+    }
+
+    StartedDevice m_started;
+    BackgroundWork m_work;  // last: ends before the result does
+};
+
 BackendSelector::BackendSelector(const Settings& settings, std::shared_ptr<ThreadTeam> threads)
     : m_settings(settings), m_threads(std::move(threads)), m_host(std::make_unique<HostBackend>(m_settings, m_threads))
 {
@@ -62,29 +71,106 @@ BackendSelector::~BackendSelector() = default;
 
 bool BackendSelector::open(Error& error)
 {
-    m_wanted = chooseDevice(m_settings, error);
-    if (error.failed()) return false;
-    m_report.m_reason = m_wanted.m_reason;
-    if (m_wanted.m_onHost) return true;
-    if (!openDevice(error))
-    {
-        if (!m_wanted.m_byCost) return false;
-        leaveDevice(error);
-        error = Error();
-        return true;
-    }
     // Kernels are profiled on the device alone.
-    return !m_wanted.m_byCost || m_settings.m_profileKernels || decideByCost(error);
+    if (decidesByCost(m_settings) && !m_settings.m_profileKernels) return beginStart(error);
+    StartedDevice started = startDevice(m_settings);
+    if (started.m_error.failed() && !started.m_wanted.m_byCost)
+    {
+        error = started.m_error;
+        return false;
+    }
+    take(std::move(started));
+    return true;
 }
 
-void BackendSelector::reopen(const BackendSelector& other)
+bool BackendSelector::beginStart(Error& error)
+{
+    double pairs = -1;
+    if (!wantedCrossover(m_settings, pairs, error)) return false;
+    m_report.m_reason = whyNoDriver(m_settings);
+    if (!m_report.m_reason.empty()) return true;
+    try
+    {
+        Settings settings = m_settings;
+        settings.m_log = nullptr;  // the app's function stays on the app's threads
+        m_start = std::make_unique<Start>(std::move(settings));
+        m_report.m_isStarting = true;
+        m_report.m_reason = "the host, while a device is being prepared";
+    }
+    catch (const std::system_error& failure)
+    {
+        m_error.m_call = std::string("starting a thread failed: ") + failure.what();
+        m_report.m_reason = "the host, since " + m_error.m_call;
+    }
+    return true;
+}
+
+bool BackendSelector::isStartDone() const
+{
+    return m_start && m_start->m_work.isDone();
+}
+
+bool BackendSelector::endStart()
+{
+    if (!m_start) return false;
+    const std::unique_ptr<Start> start = std::move(m_start);
+    m_report.m_isStarting = false;
+    try
+    {
+        start->m_work.wait();
+        take(std::move(start->m_started));
+    }
+    catch (const std::exception& failure)  // nobody requested the device: the host goes on
+    {
+        m_device.reset();
+        m_wanted.m_device.m_name = "OpenCL";
+        Error error;
+        error.m_call = failure.what();
+        leaveDevice(error);
+    }
+    return m_device != nullptr;
+}
+
+void BackendSelector::take(StartedDevice started)
+{
+    m_wanted = started.m_wanted;
+    m_report.m_reason = m_wanted.m_reason;
+    m_report.m_buildMs = started.m_buildMs;
+    m_report.m_measureMs = started.m_measureMs;
+    if (started.m_error.failed()) return leaveDevice(started.m_error);
+    if (!started.m_backend) return;
+    useDevice(std::move(started.m_backend));
+    if (!m_wanted.m_byCost || m_settings.m_profileKernels) return;
+    m_error.m_call = started.m_remark;
+    m_report.m_byCost = true;
+    m_report.m_crossover = started.m_crossover;
+    m_report.m_crossoverSource = started.m_crossoverSource;
+    m_choice.begin(started.m_crossover);
+    forgetPairs();
+    selectByWork();
+}
+
+void BackendSelector::useDevice(std::unique_ptr<DeviceBackend> device)
+{
+    m_device = std::move(device);
+    m_report.m_onHost = false;
+    m_report.m_device = m_wanted.m_device;
+    m_report.m_fromCache = m_device->fromCache();
+}
+
+void BackendSelector::reopen(BackendSelector& other)
 {
     m_wanted = other.m_wanted;
     m_report = other.m_report;
     m_error = other.m_error;
     m_deviceFailed = other.m_deviceFailed;
     Error error;
-    if (other.m_device && !m_deviceFailed && !openDevice(error))
+    if (other.m_device && !m_deviceFailed)
+    {
+        std::unique_ptr<DeviceBackend> device = openBackend(m_wanted, m_settings, error);
+        if (device) useDevice(std::move(device));
+    }
+    if (error.failed())
     {
         leaveDevice(error);
     }
@@ -93,6 +179,7 @@ void BackendSelector::reopen(const BackendSelector& other)
         m_choice.begin(other.m_choice.crossover());
         selectByWork();
     }
+    m_start = std::move(other.m_start);
 }
 
 Device* BackendSelector::device()
@@ -105,28 +192,6 @@ SolveStage* BackendSelector::solveStage(std::size_t nodes)
     if (!m_device || m_device->device().failed() || !m_device->solveStage().created()) return nullptr;
     const bool pays = nodes >= kLeastDeviceNodes * m_threads->size() || m_settings.m_solverPlace == SolverPlace::Device;
     return pays ? &m_device->solveStage() : nullptr;
-}
-
-std::unique_ptr<DeviceBackend> BackendSelector::makeDeviceBackend(Error& error) const
-{
-    std::unique_ptr<Device> device = Device::open(m_wanted.m_index, error, m_settings.m_profileKernels);
-    if (!device) return nullptr;
-    auto backend = std::make_unique<DeviceBackend>(std::move(device), m_settings);
-    if (!backend->device().failed()) return backend;
-    error = backend->device().error();
-    return nullptr;
-}
-
-bool BackendSelector::openDevice(Error& error)
-{
-    Stopwatch watch;
-    m_device = makeDeviceBackend(error);
-    if (!m_device) return false;
-    m_report.m_onHost = false;
-    m_report.m_device = m_wanted.m_device;
-    m_report.m_fromCache = m_device->fromCache();
-    m_report.m_buildMs = watch.lapMs();
-    return true;
 }
 
 void BackendSelector::leaveDevice()
@@ -165,65 +230,6 @@ void BackendSelector::giveBackRoom()
 {
     if (m_device && !m_deviceFailed) m_device->giveBackRoom();
     m_host->giveBackRoom();
-}
-
-bool BackendSelector::decideByCost(Error& error)
-{
-    double pairs = -1;
-    if (!wantedCrossover(m_settings, pairs, error)) return false;
-    m_report.m_crossoverSource = "set";
-    if (pairs < 0) pairs = findCrossover();
-    if (m_deviceFailed) return true;
-    m_report.m_byCost = true;
-    m_report.m_crossover = pairs;
-    m_choice.begin(pairs);
-    selectByWork();
-    return true;
-}
-
-const char* BackendSelector::measureCrossover(Crossover& crossover, bool& busy, Error& error) const
-{
-    const std::unique_ptr<DeviceBackend> device = makeDeviceBackend(error);
-    if (!device) return "it failed";
-    HostBackend host(m_settings, m_threads);
-    const char* const why = measureLadder({host, *device, m_settings, m_threads->size()}, crossover.m_rungs, busy);
-    error = device->device().error();
-    return why;
-}
-
-double BackendSelector::findCrossover()
-{
-    const CrossoverCache cache(m_settings, m_wanted.m_device, device()->computeUnits());
-    const char* const onBusy = ", on a busy machine";
-    Crossover before, crossover;
-    if (cache.load(before) && !isProvisional(before))
-    {
-        m_report.m_crossoverSource = std::string("measured before") + (before.m_busyStarts > 0 ? onBusy : "");
-        return before.m_pairs;
-    }
-    Stopwatch watch;
-    bool busy = false;
-    Error error;
-    const char* const why = measureCrossover(crossover, busy, error);
-    m_report.m_measureMs = watch.lapMs();
-    if (error.failed())
-    {
-        m_report.m_crossoverSource.clear();
-        leaveDevice(error);
-        return kInfinity;
-    }
-    if (why)
-    {
-        m_report.m_crossoverSource = why;
-        m_error.m_call = m_wanted.m_device.m_name + " is not used: " + why;
-        return kInfinity;
-    }
-    if (busy) crossover.m_rungs = leastTimes(crossover.m_rungs, before.m_rungs);
-    crossover.m_busyStarts = busy ? before.m_busyStarts + 1 : 0;
-    crossover.m_pairs = bestCrossover(crossover.m_rungs);
-    m_report.m_crossoverSource = std::string("measured now") + (busy ? onBusy : "");
-    cache.store(crossover);
-    return crossover.m_pairs;
 }
 
 void BackendSelector::selectByWork()

@@ -2,8 +2,9 @@
 //
 // Job: open the device that the settings select, decide by cost between it and the host where nothing names one (see
 // backend_choice.h), and continue on the host once the device failed. Output: the back end of the coming step, and a
-// report with the reason. Guarantee: a failed device is never used again. Cost: opening builds the device's kernels;
-// the first start on a machine measures the crossover, in a second or two.
+// report with the reason. Guarantee: a failed device is never used again. Cost: a device that is named is opened at
+// once, which builds its kernels (device_start.h). One that cost decides about is opened in the background, and the
+// host runs the steps until endStart() takes it.
 #pragma once
 
 #include <memory>
@@ -19,7 +20,7 @@ class DeviceBackend;
 class HostBackend;
 class SolveStage;
 class ThreadTeam;
-struct Crossover;
+struct StartedDevice;
 
 class BackendSelector
 {
@@ -29,10 +30,15 @@ public:
     ~BackendSelector();
 
     // Opens the device that the settings select. Returns false, with error filled, if a requested device is missing or
-    // fails. If a device that was not requested fails, the host remains.
+    // fails. If cost decides, begins a start in the background, unless the machine has no driver for it.
     bool open(Error& error);
-    // Opens the same device as another selector with the same settings, unless it failed there.
-    void reopen(const BackendSelector& other);
+    // Returns whether a start in the background has ended, and endStart() would not wait.
+    bool isStartDone() const;
+    // Waits for the start in the background, if there is one, and takes its device. If it failed, the host remains.
+    // Returns whether there is a new device. Call between steps.
+    bool endStart();
+    // Opens the same device as another selector with the same settings, unless it failed there. Takes over its start.
+    void reopen(BackendSelector& other);
 
     const DeviceReport& report() const { return m_report; }
     // The device's failure, or another call's that was noted here.
@@ -65,17 +71,13 @@ public:
     void leaveDevice();
 
 private:
+    // A start in the background.
+    struct Start;
+
     void leaveDevice(const Error& error);
-    // Returns null, with error filled, if the device cannot be opened or its kernels cannot be built.
-    std::unique_ptr<DeviceBackend> makeDeviceBackend(Error& error) const;
-    bool openDevice(Error& error);
-    // Lets cost decide from now on. Returns false if the crossover is set to an invalid value.
-    bool decideByCost(Error& error);
-    // Reads the crossover from the cache, or measures it. Leaves a device that fails meanwhile.
-    double findCrossover();
-    // Measures on back ends of its own, which are closed afterwards; the cache has the kernels by then. Returns null,
-    // or why the device cannot be used.
-    const char* measureCrossover(Crossover& crossover, bool& busy, Error& error) const;
+    bool beginStart(Error& error);
+    void take(StartedDevice started);
+    void useDevice(std::unique_ptr<DeviceBackend> device);
     // Selects the back end of the coming steps by the scene's work, and updates the report.
     void selectByWork();
     // Returns whether the host may run the steps of all current meshes. If cost decides, assumes pairs of a thickness
@@ -93,5 +95,6 @@ private:
     BackendChoice m_choice;                 // active where cost decides
     std::vector<NamedPair> m_countedPairs;  // pairs whose work m_choice knows
     std::vector<MeshId> m_countedSelf;
+    std::unique_ptr<Start> m_start;  // null: there is none
 };
 }  // namespace drape

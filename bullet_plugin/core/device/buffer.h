@@ -135,6 +135,17 @@ public:
         m_capacity = wanted;
     }
 
+    // Releases the memory, which must not be in use by a transfer.
+    void release()
+    {
+        if (m_queue()) m_queue.enqueueUnmapMemObject(m_pinned, m_data);
+        m_queue = cl::CommandQueue();
+        m_pinned = cl::Buffer();
+        m_plain.clear();
+        m_data = nullptr;
+        m_capacity = 0;
+    }
+
 private:
     void mapPinned(Device& device, std::size_t count)
     {
@@ -147,15 +158,6 @@ private:
         if (code != CL_SUCCESS) return;
         m_data = static_cast<T*>(mapped);
         m_queue = device.queue();
-    }
-    void release()
-    {
-        if (m_queue()) m_queue.enqueueUnmapMemObject(m_pinned, m_data);
-        m_queue = cl::CommandQueue();
-        m_pinned = cl::Buffer();
-        m_plain.clear();
-        m_data = nullptr;
-        m_capacity = 0;
     }
 
     cl::Buffer m_pinned;

@@ -64,7 +64,9 @@ DeviceSearch findDevices()
     const OpenClLock lock;
     std::vector<cl::Platform> platforms;
     DeviceSearch search;
-    if (cl::Platform::get(&platforms) != CL_SUCCESS) return search;
+    const cl_int code = cl::Platform::get(&platforms);
+    endOpenClAtExit();
+    if (code != CL_SUCCESS) return search;
     for (const cl::Platform& platform : platforms)
         addDevices(platform, search);
     std::stable_partition(search.m_found.begin(), search.m_found.end(),
@@ -95,7 +97,7 @@ std::vector<DeviceInfo> listDevices()
     return guardedOr(std::vector<DeviceInfo>(), [] { return deviceInfos(); });
 }
 
-std::unique_ptr<Device> Device::open(std::size_t index, Error& error, bool profiled)
+std::unique_ptr<Device> Device::open(std::size_t index, Error& error, bool profiled, const StopFlag& stop)
 {
     const OpenClLock lock;
     const DeviceSearch search = findDevices();
@@ -107,6 +109,7 @@ std::unique_ptr<Device> Device::open(std::size_t index, Error& error, bool profi
         return nullptr;
     }
     std::unique_ptr<Device> device(new Device);
+    device->m_stop = stop;
     device->m_info = found[index].m_info;
     device->m_device = found[index].m_device;
     cl_int code = CL_SUCCESS;

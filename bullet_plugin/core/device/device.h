@@ -5,16 +5,16 @@
 // and close devices of their own (opencl_lock.h). The only folder that includes OpenCL headers is this one.
 #pragma once
 
-#include <CL/opencl.hpp>
-
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "background_work.h"
 #include "drape/error.h"
 #include "drape/report.h"
 #include "drape/settings.h"
 #include "memory_ledger.h"
+#include "opencl.h"
 #include "profiler.h"
 
 namespace drape
@@ -26,15 +26,17 @@ class Device
 {
 public:
     // Opens the index-th device of deviceInfos(). Returns null, with error filled, if the context or queue cannot be
-    // created. profiled: the queue measures every launch's time, see profiler.h.
-    static std::unique_ptr<Device> open(std::size_t index, Error& error, bool profiled = false);
+    // created. profiled: the queue measures every launch's time, see profiler.h. stop: counts as a failure once it is
+    // true, so that work on the device ends soon; null for never.
+    static std::unique_ptr<Device> open(std::size_t index, Error& error, bool profiled = false,
+                                        const StopFlag& stop = nullptr);
     ~Device();
     Device(const Device&) = delete;
     Device& operator=(const Device&) = delete;
 
     const DeviceInfo& info() const { return m_info; }
     bool isGpu() const { return m_info.m_isGpu; }
-    bool failed() const { return m_error.failed(); }
+    bool failed() const { return m_error.failed() || (m_stop && *m_stop); }
     const Error& error() const { return m_error; }
 
     // Records a failure when code is not CL_SUCCESS. Returns whether the device is still good.
@@ -74,6 +76,7 @@ private:
     std::size_t m_waits = 0;
     std::unique_ptr<Profiler> m_profiler;
     MemoryLedger m_memory;
+    StopFlag m_stop;
     Error m_error;
 };
 

@@ -3,21 +3,15 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <system_error>
 
+#include "driver_files.h"
+#include "environment.h"
+#include "opencl.h"
+
 namespace drape
 {
-namespace
-{
-std::string variable(const char* name)
-{
-    const char* const value = std::getenv(name);
-    return value ? value : "";
-}
-}  // namespace
-
 std::string poclCacheFolder()
 {
     const std::string own = variable("POCL_CACHE_DIR"), cache = variable("XDG_CACHE_HOME");
@@ -46,10 +40,12 @@ int descriptorsLeft()
 
 std::string whyNoDeviceFound(const std::string& seen, bool poclWithoutDevice)
 {
+    if (!kHasOpenCl) return kNoOpenClBuild;
     const int descriptors = descriptorsLeft();
     if (descriptors < kEnoughDescriptors)
         return "this process can open " + std::to_string(descriptors) +
                " files more, and drivers are found by opening files";
+    if (!hasOpenClLoader()) return "this machine has no OpenCL loader, libOpenCL.so.1 (Debian: ocl-icd-libopencl1)";
     if (seen.empty())
     {
         const std::string vendors = variable("OCL_ICD_VENDORS");

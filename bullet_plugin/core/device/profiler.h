@@ -4,13 +4,12 @@
 // profiled (Device::profiler()). Cost: an event a launch until take().
 #pragma once
 
-#include <CL/opencl.hpp>
-
 #include <deque>
 #include <string>
 #include <vector>
 
 #include "drape/report.h"
+#include "opencl.h"
 
 namespace drape
 {

@@ -58,15 +58,37 @@ std::unique_ptr<Pipeline> Pipeline::create(const Settings& settings, Error& erro
 
 void Pipeline::restart()
 {
-    const Implementation& old = *m_implementation;
+    Implementation& old = *m_implementation;
     auto fresh = std::make_unique<Implementation>(old.m_settings, old.m_threads, old.m_scene.nextId());
     fresh->m_backends.reopen(old.m_backends);
     m_implementation = std::move(fresh);
 }
 
+bool Pipeline::isStartDone() const
+{
+    return m_implementation->m_backends.isStartDone();
+}
+
+void Pipeline::endStart()
+{
+    Implementation& self = *m_implementation;
+    assert(!self.m_submitted);
+    if (!self.m_backends.endStart()) return;
+    self.join();
+    self.m_nodes.forget();
+    self.m_scene.pinNodes(*self.m_backends.device());
+    if (self.m_scene.m_anySelf) self.m_backends.prepareSelf();
+}
+
 const DeviceReport& Pipeline::deviceReport() const
 {
     return m_implementation->m_backends.report();
+}
+
+std::string Pipeline::deviceName() const
+{
+    const Device* const device = m_implementation->m_backends.device();
+    return device ? device->info().m_name : "host";
 }
 
 MeshId Pipeline::addCloth(const MeshDescription& mesh)

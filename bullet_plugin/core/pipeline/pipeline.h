@@ -42,9 +42,10 @@ struct NodeStretch
 class Pipeline
 {
 public:
-    // Chooses the device and builds its kernels. Returns null and fills error if the settings request an unavailable
-    // or failing device, or are out of their ranges. If a device that was not requested fails, the host remains:
-    // see deviceReport() and lastError().
+    // Opens the device that the settings request and builds its kernels. Returns null and fills error if it is
+    // unavailable or fails, or if settings are out of their ranges. If cost decides, the device is prepared in the
+    // background, and the host computes until endStart(). If that device fails, the host remains: see deviceReport()
+    // and lastError().
     static std::unique_ptr<Pipeline> create(const Settings& settings, Error& error);
     ~Pipeline();
     Pipeline(const Pipeline&) = delete;
@@ -54,7 +55,16 @@ public:
     // opens the device anew, which takes as long as a second start. Throws, with nothing changed, if memory runs out.
     void restart();
 
+    // Returns whether the start in the background has ended, and endStart() would not wait.
+    bool isStartDone() const;
+    // Waits for the start in the background, if there is one, and takes its device: later steps may run there. Results
+    // do not depend on this. Invalidates the last step's contacts and the memory of clothStart() and clothEnd(). Do not
+    // call between submit() and finish().
+    void endStart();
+
     const DeviceReport& deviceReport() const;
+    // Returns the open device's name, also while the host runs the steps; "host" without one.
+    std::string deviceName() const;
 
     // Add a mesh; both copy their input. Topology is fixed until remove(). They return kNoMesh, with nothing added,
     // for a mesh with an index out of range; lastError() names it. The next step costs more in proportion to the

@@ -27,6 +27,13 @@ public:
         m_floats.reserve(device, 2 * m_room);
     }
 
+    // Releases the memory; contents are lost.
+    void release()
+    {
+        m_floats.release();
+        m_room = 0;
+    }
+
 private:
     Staging<float> m_floats;
     std::size_t m_room = 0;

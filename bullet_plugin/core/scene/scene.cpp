@@ -211,6 +211,13 @@ void Scene::join(Device* device)
     }
 }
 
+void Scene::pinNodes(Device& device)
+{
+    if (m_clothNodes.room() == 0) return;
+    m_clothNodes.release();
+    joinCloths(0, &device);
+}
+
 void Scene::giveBackRoom()
 {
     m_cloths.giveBackRoom();

@@ -49,6 +49,8 @@ struct Scene
     bool isJoined() const { return m_cloths.isJoined() && m_obstacles.isJoined(); }
     // Joins the meshes. Nodes may move, and their contents are then lost. device: for pinned memory, null for none.
     void join(Device* device);
+    // Moves the joined nodes into memory that the device can copy fast. Their contents are lost.
+    void pinNodes(Device& device);
     // Releases memory that only earlier, larger scenes needed. The joined arrays move.
     void giveBackRoom();
 

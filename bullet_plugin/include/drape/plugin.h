@@ -71,9 +71,11 @@ using TriangleFilter = std::function<bool(int part, int triangle)>;
 class Plugin
 {
 public:
-    // Chooses the device and compiles its kernels: milliseconds to seconds, see DeviceReport. Failures are in error().
+    // Returns within milliseconds if the settings name no device; the host then computes until a GPU is ready, see
+    // DeviceReport. Otherwise waits until the device's kernels are compiled. Failures are in error().
     explicit Plugin(const Settings& settings = Settings());
-    // Releases the pipeline unless a configuration or solver still uses it.
+    // Releases the pipeline unless a configuration or solver still uses it. Releasing it stops a start in the
+    // background, and waits for the program that the device's driver is compiling.
     ~Plugin();
     // A plugin owns a device: no copies.
     Plugin(const Plugin&) = delete;
@@ -85,6 +87,10 @@ public:
     // Returns the failure with its whole log; empty if there was none. May be set although ready() is true: then the
     // host took over from a device. "out of memory" if memory ran out.
     std::string error() const;
+
+    // Waits until the start in the background has ended, if there is one. Steps of the world move to the device by
+    // themselves once it is ready; this is for apps that load a level meanwhile, and for measurements.
+    void awaitDevice();
 
     // Returns the device and the reason for it. Valid as long as the plugin.
     const DeviceReport& device() const;
@@ -143,7 +149,7 @@ public:
     // alive and in its world until `keep` is false, which fetches its nodes. If the device fails, the nodes of the last
     // fetch() remain. If memory runs out in a step, all bodies get their nodes and are kept no more. Once the plugin is
     // destroyed, bodies get theirs in the next step. No call tells whether a body is still kept: call keepOnDevice()
-    // again after kStepOutOfMemory. A failed device keeps none; a new plugin may.
+    // again after kStepOutOfMemory. A failed device keeps none; a new plugin may. Waits for a device that is starting.
     std::string keepOnDevice(btSoftBody& body, bool keep);
     // Takes a kept body's nodes as Bullet has them: those of the last fetch(), with what the app has changed since.
     void takeNodes(const btSoftBody& body);

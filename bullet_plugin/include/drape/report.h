@@ -24,6 +24,8 @@ struct DeviceReport
 {
     // True if the host back end computes.
     bool m_onHost = true;
+    // True while a device is looked for and its kernels are compiled in the background; the host computes meanwhile.
+    bool m_isStarting = false;
     // The device; its name is "host" for the host back end.
     DeviceInfo m_device;
     // One line: the reason for this device, with figures if cost decides.
@@ -33,8 +35,8 @@ struct DeviceReport
     // True if every kernel came from Drape's cache. Always false on PoCL, which has its own cache.
     bool m_fromCache = false;
 
-    // True if cost decides between the host and a device (Backend::Auto). Then m_onHost, m_device and m_reason describe
-    // the last step with a pair or, before it, a scene without one.
+    // True if cost decides between the host and a device (Backend::Auto, ByCost). Then m_onHost, m_device and m_reason
+    // describe the last step with a pair or, before it, a scene without one.
     bool m_byCost = false;
     // Estimated number of triangle pairs: the pairs there would be if every cloth lay wholly on the obstacle.
     double m_expectedPairs = 0;

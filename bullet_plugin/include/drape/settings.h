@@ -17,13 +17,16 @@ void logToStandardError(const char* line);
 // Selects where Drape computes.
 enum class Backend
 {
-    // A GPU, else any OpenCL device. The host if there is no device, if it fails (error() then says why), or if the
-    // scene is too small for it.
+    // A GPU for scenes that are large enough for it, else the host. The GPU's kernels are compiled in the background,
+    // and the host runs every step until then. The host remains if the GPU fails (error() then says why). OpenCL is not
+    // loaded on a machine whose drivers are for its CPU.
     Auto,
-    // An OpenCL device; a failure if there is none.
+    // An OpenCL device; a failure if there is none. The constructor waits for its kernels.
     OpenCl,
     // The host: the same functions compiled as C++, on m_threads threads and without OpenCL.
-    Host
+    Host,
+    // Like Auto, but any OpenCL device, a CPU's too: for scenes for which the measurement says that the device pays.
+    ByCost
 };
 
 // Selects how a step looks at the cloth's motion between its start and its end.
@@ -63,15 +66,17 @@ struct Settings
     // Selects the back end. Default: Auto.
     Backend m_backend = Backend::Auto;
 
-    // Part of an OpenCL device's or platform's name, case-insensitive; "host" selects the host back end. Empty means
-    // the environment variable DRAPE_DEVICE, and if that is empty the order of Backend::Auto.
+    // Part of an OpenCL device's or platform's name, case-insensitive; "host" selects the host back end. The
+    // constructor waits for a named device. Empty means the environment variable DRAPE_DEVICE, and if that is empty
+    // m_backend chooses.
     std::string m_device;
 
-    // The scene size from which the device is used, in expected triangle pairs; applies to Backend::Auto without a
-    // named device. 0 means always the device, infinite always the host. A scene that shrinks returns to the host below
-    // half of it. Negative (the default) means the environment variable DRAPE_CROSSOVER and, if that is empty, a
-    // measurement. The measurement takes a second or two at the first start and is kept in the cache folder. It is
-    // repeated at the next starts, three at most, if the machine was busy. Contacts do not depend on this.
+    // The scene size from which the device is used, in expected triangle pairs; applies to Backend::Auto and ByCost
+    // without a named device. 0 means always the device, infinite always the host. A scene that shrinks returns to the
+    // host below half of it. Negative (the default) means the environment variable DRAPE_CROSSOVER and, if that is
+    // empty, a measurement. The measurement takes a second or two at the first start, in the background, and is kept in
+    // the cache folder. It is repeated at the next starts, three at most, if the machine was busy. Contacts do not
+    // depend on this.
     double m_crossover = -1;
 
     // Distance beyond the thickness up to which contacts are reported, as a fraction of the thickness. Range 0 to 4.
@@ -126,10 +131,11 @@ struct Settings
     // the cache off. PoCL always keeps its kernels itself, in $XDG_CACHE_HOME/pocl or ~/.cache/pocl.
     std::string m_cacheFolder;
 
-    // Receives one line without a line feed about a problem of the world that no return value reports. Problems are a
-    // pair that starts a step intersecting, cloth that is left out, and a margin that is negative or as large as the
-    // mesh. Called once while the problem lasts, on the thread that steps the world. nullptr means no lines. Exceptions
-    // from it are dropped.
+    // Receives one line without a line feed about what no return value reports. Setup: a device that is missing or
+    // failed, kernels that were compiled (with the time), a world without the solver or the collision configuration,
+    // two threads in one plugin. Cloth: left out of a step, intersecting at its start (with counts), a margin that is
+    // negative or as large as the mesh, a thickness out of proportion to the cloth's edges. Called once while the
+    // problem lasts, on a thread that calls the plugin. nullptr means no lines. Exceptions from it are dropped.
     std::function<void(const char*)> m_log = logToStandardError;
 };
 }  // namespace drape

@@ -1,0 +1,47 @@
+#include "opencl.h"
+
+#if DRAPE_OPENCL
+
+#include <dlfcn.h>
+
+#include <atomic>
+#include <cstdlib>
+
+#include "background_work.h"
+
+namespace drape
+{
+namespace
+{
+std::atomic<bool> g_ended{false};
+
+// Opened at most once, and never closed: drivers keep threads.
+std::atomic<void*> g_loader{nullptr};
+
+void endOpenCl()
+{
+    BackgroundWork::stopAll();
+    g_ended = true;
+}
+}  // namespace
+
+void* openClFunction(const char* name) noexcept
+{
+    if (void* const function = dlsym(RTLD_DEFAULT, name)) return function;
+    if (!g_loader) g_loader = dlopen("libOpenCL.so.1", RTLD_NOW | RTLD_LOCAL);
+    return g_loader ? dlsym(g_loader, name) : nullptr;
+}
+
+void endOpenClAtExit() noexcept
+{
+    static const int registered = std::atexit(endOpenCl);
+    static_cast<void>(registered);
+}
+
+bool isOpenClEnded() noexcept
+{
+    return g_ended.load(std::memory_order_relaxed);
+}
+}  // namespace drape
+
+#endif
