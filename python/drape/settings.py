@@ -17,14 +17,16 @@ def log_to_standard_error(line: str) -> None:
 class Settings:
     """Choices before Drape starts. docs/settings.md says what to change, and why.
 
-    backend: "auto", "opencl" or "host".
+    backend: "auto", "opencl", "host" or "by_cost".
     device: part of an OpenCL device's or platform's name, or "host"; "" means the environment variable DRAPE_DEVICE.
     crossover: expected triangle pairs from which the device is used; 0 always, infinity never, negative: measured.
     activation: reach of contacts beyond the thickness, as a fraction of it, 0 to 4.
     mode: "discrete", "continuous" or "automatic", the treatment of motion within a step.
     solver: "auto", "drape" or "bullet", which solves the links.
     solver_place: "auto", "host" or "device", where Drape's solver computes.
-    dynamic_convex: "drape" or "bullet", which finds contacts with dynamic convex bodies.
+    dynamic_convex: "drape" or "bullet", which finds contacts with convex shapes of dynamic bodies.
+    static_convex: the same for convex shapes of static and kinematic bodies.
+    surfaces: the same for planes and height fields.
     cloth_sleeps: lets cloth at rest fall asleep.
     threads: number of threads, 0 to 64; 0 means the available cores, 8 at most.
     candidate_limit: largest number of candidates in a step or query.
@@ -42,6 +44,8 @@ class Settings:
     solver: str = "auto"
     solver_place: str = "auto"
     dynamic_convex: str = "drape"
+    static_convex: str = "drape"
+    surfaces: str = "drape"
     cloth_sleeps: bool = False
     threads: int = 0
     candidate_limit: int = 2**27

@@ -47,7 +47,9 @@ TEST(CApi, SettingsArriveInCpp)
     flat.m_mode = DRAPE_MODE_CONTINUOUS;
     flat.m_solver = DRAPE_SOLVER_BULLET;
     flat.m_solverPlace = DRAPE_SOLVER_PLACE_DEVICE;
-    flat.m_dynamicConvex = DRAPE_DYNAMIC_CONVEX_BULLET;
+    flat.m_dynamicConvex = DRAPE_SHAPE_CONTACTS_BULLET;
+    flat.m_staticConvex = DRAPE_SHAPE_CONTACTS_BULLET;
+    flat.m_surfaces = DRAPE_SHAPE_CONTACTS_BULLET;
     flat.m_clothSleeps = 1;
     flat.m_threads = 3;
     flat.m_candidateLimit = 11;
@@ -65,7 +67,9 @@ TEST(CApi, SettingsArriveInCpp)
     EXPECT_EQ(settings.m_mode, ContactMode::Continuous);
     EXPECT_EQ(settings.m_solver, Solver::Bullet);
     EXPECT_EQ(settings.m_solverPlace, SolverPlace::Device);
-    EXPECT_EQ(settings.m_dynamicConvex, DynamicConvex::Bullet);
+    EXPECT_EQ(settings.m_dynamicConvex, ShapeContacts::Bullet);
+    EXPECT_EQ(settings.m_staticConvex, ShapeContacts::Bullet);
+    EXPECT_EQ(settings.m_surfaces, ShapeContacts::Bullet);
     EXPECT_TRUE(settings.m_clothSleeps);
     EXPECT_EQ(settings.m_threads, 3u);
     EXPECT_EQ(settings.m_candidateLimit, 11u);

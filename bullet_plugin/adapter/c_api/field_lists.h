@@ -6,15 +6,15 @@
 // All fields of Settings but m_log, which C has as two fields.
 #define DRAPE_SETTINGS_FIELDS(FIELD) \
     FIELD(m_backend) FIELD(m_device) FIELD(m_crossover) FIELD(m_activation) FIELD(m_mode) FIELD(m_solver) \
-    FIELD(m_solverPlace) FIELD(m_dynamicConvex) FIELD(m_clothSleeps) FIELD(m_threads) FIELD(m_candidateLimit) \
-    FIELD(m_contactLimit) FIELD(m_profileKernels) FIELD(m_cacheFolder)
+    FIELD(m_solverPlace) FIELD(m_dynamicConvex) FIELD(m_staticConvex) FIELD(m_surfaces) FIELD(m_clothSleeps) \
+    FIELD(m_threads) FIELD(m_candidateLimit) FIELD(m_contactLimit) FIELD(m_profileKernels) FIELD(m_cacheFolder)
 
 #define DRAPE_DEVICE_INFO_FIELDS(FIELD) \
     FIELD(m_platform) FIELD(m_name) FIELD(m_driver) FIELD(m_isGpu)
 
 // All fields of DeviceReport but m_device.
 #define DRAPE_DEVICE_REPORT_FIELDS(FIELD) \
-    FIELD(m_onHost) FIELD(m_reason) FIELD(m_buildMs) FIELD(m_fromCache) FIELD(m_byCost) FIELD(m_expectedPairs) \
+    FIELD(m_onHost) FIELD(m_isStarting) FIELD(m_reason) FIELD(m_buildMs) FIELD(m_fromCache) FIELD(m_byCost) FIELD(m_expectedPairs) \
     FIELD(m_crossover) FIELD(m_crossoverSource) FIELD(m_measureMs)
 
 // Fields of StepStatistics and of its bases.
@@ -37,6 +37,7 @@
     CHOICE(m_backend, DRAPE_BACKEND_AUTO, Backend::Auto, "auto") \
     CHOICE(m_backend, DRAPE_BACKEND_OPENCL, Backend::OpenCl, "opencl") \
     CHOICE(m_backend, DRAPE_BACKEND_HOST, Backend::Host, "host") \
+    CHOICE(m_backend, DRAPE_BACKEND_BY_COST, Backend::ByCost, "by_cost") \
     CHOICE(m_mode, DRAPE_MODE_DISCRETE, ContactMode::Discrete, "discrete") \
     CHOICE(m_mode, DRAPE_MODE_CONTINUOUS, ContactMode::Continuous, "continuous") \
     CHOICE(m_mode, DRAPE_MODE_AUTOMATIC, ContactMode::Automatic, "automatic") \
@@ -46,8 +47,12 @@
     CHOICE(m_solverPlace, DRAPE_SOLVER_PLACE_AUTO, SolverPlace::Auto, "auto") \
     CHOICE(m_solverPlace, DRAPE_SOLVER_PLACE_HOST, SolverPlace::Host, "host") \
     CHOICE(m_solverPlace, DRAPE_SOLVER_PLACE_DEVICE, SolverPlace::Device, "device") \
-    CHOICE(m_dynamicConvex, DRAPE_DYNAMIC_CONVEX_DRAPE, DynamicConvex::Drape, "drape") \
-    CHOICE(m_dynamicConvex, DRAPE_DYNAMIC_CONVEX_BULLET, DynamicConvex::Bullet, "bullet")
+    CHOICE(m_dynamicConvex, DRAPE_SHAPE_CONTACTS_DRAPE, ShapeContacts::Drape, "drape") \
+    CHOICE(m_dynamicConvex, DRAPE_SHAPE_CONTACTS_BULLET, ShapeContacts::Bullet, "bullet") \
+    CHOICE(m_staticConvex, DRAPE_SHAPE_CONTACTS_DRAPE, ShapeContacts::Drape, "drape") \
+    CHOICE(m_staticConvex, DRAPE_SHAPE_CONTACTS_BULLET, ShapeContacts::Bullet, "bullet") \
+    CHOICE(m_surfaces, DRAPE_SHAPE_CONTACTS_DRAPE, ShapeContacts::Drape, "drape") \
+    CHOICE(m_surfaces, DRAPE_SHAPE_CONTACTS_BULLET, ShapeContacts::Bullet, "bullet")
 
 // Bits of a step's status: the name in C without DRAPE_STEP_, which is the name in Python, and the enumerator.
 #define DRAPE_STATUS_BITS(BIT) \

@@ -40,7 +40,8 @@ enum
 {
     DRAPE_BACKEND_AUTO = 0,
     DRAPE_BACKEND_OPENCL = 1,
-    DRAPE_BACKEND_HOST = 2
+    DRAPE_BACKEND_HOST = 2,
+    DRAPE_BACKEND_BY_COST = 3
 };
 
 // Values of DrapeSettings::m_mode; see ContactMode of drape/settings.h.
@@ -67,11 +68,11 @@ enum
     DRAPE_SOLVER_PLACE_DEVICE = 2
 };
 
-// Values of DrapeSettings::m_dynamicConvex; see DynamicConvex of drape/settings.h.
+// Values of DrapeSettings::m_dynamicConvex, m_staticConvex and m_surfaces; see ShapeContacts of drape/settings.h.
 enum
 {
-    DRAPE_DYNAMIC_CONVEX_DRAPE = 0,
-    DRAPE_DYNAMIC_CONVEX_BULLET = 1
+    DRAPE_SHAPE_CONTACTS_DRAPE = 0,
+    DRAPE_SHAPE_CONTACTS_BULLET = 1
 };
 
 // Tests of two triangles; see TriangleTest of drape/queries.h.
@@ -120,7 +121,9 @@ typedef struct DrapeSettings
     int m_mode;                 // DRAPE_MODE_…
     int m_solver;               // DRAPE_SOLVER_…
     int m_solverPlace;          // DRAPE_SOLVER_PLACE_…
-    int m_dynamicConvex;        // DRAPE_DYNAMIC_CONVEX_…
+    int m_dynamicConvex;        // DRAPE_SHAPE_CONTACTS_…, with convex shapes of dynamic bodies
+    int m_staticConvex;         // DRAPE_SHAPE_CONTACTS_…, with convex shapes of other bodies
+    int m_surfaces;             // DRAPE_SHAPE_CONTACTS_…, with planes and height fields
     int m_clothSleeps;          // 1: cloth at rest falls asleep
     unsigned m_threads;         // number of threads, 0 to 64; 0: available cores, 8 at most
     size_t m_candidateLimit;    // largest number of candidates in a step or query
@@ -144,6 +147,7 @@ typedef struct DrapeDeviceInfo
 typedef struct DrapeDeviceReport
 {
     int m_onHost;                   // 1 if the host back end computes
+    int m_isStarting;               // 1 while a device is prepared in the background
     DrapeDeviceInfo m_device;       // the device
     const char* m_reason;           // the reason for this device, one line
     double m_buildMs;               // time to load the kernels, ms
