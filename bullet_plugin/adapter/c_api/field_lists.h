@@ -14,8 +14,8 @@
 
 // All fields of DeviceReport but m_device.
 #define DRAPE_DEVICE_REPORT_FIELDS(FIELD) \
-    FIELD(m_onHost) FIELD(m_isStarting) FIELD(m_reason) FIELD(m_buildMs) FIELD(m_fromCache) FIELD(m_byCost) FIELD(m_expectedPairs) \
-    FIELD(m_crossover) FIELD(m_crossoverSource) FIELD(m_measureMs)
+    FIELD(m_onHost) FIELD(m_isStarting) FIELD(m_reason) FIELD(m_buildMs) FIELD(m_fromCache) FIELD(m_byCost) \
+    FIELD(m_expectedPairs) FIELD(m_crossover) FIELD(m_crossoverSource) FIELD(m_measureMs)
 
 // Fields of StepStatistics and of its bases.
 #define DRAPE_STATISTICS_FIELDS(FIELD) \
