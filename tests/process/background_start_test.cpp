@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "bullet_plugin/core/device/driver_files.h"
+#include "bullet_plugin/core/device/missing_device.h"
 #include "bullet_plugin/core/device/opencl_lock.h"
 #include "scenes/shapes.h"
 #include "tests/bullet/drop_world.h"
@@ -143,10 +144,10 @@ TEST(BackgroundStart, EndsWithItsPluginAtAnyTime)
         });
 }
 
-// PoCL's own cache is empty, so that it compiles.
+// PoCL's own cache is empty, so that it compiles. Caches of other drivers may be full.
 TEST(BackgroundStart, TellsHowLongKernelsWereCompiled)
 {
-    if (!isDeviceExpected()) GTEST_SKIP();
+    if (!isDeviceExpected() || listDevices()[0].m_platform != kPoclPlatform) GTEST_SKIP();
     inOwnProcess(
         []
         {
