@@ -7,6 +7,7 @@
 
 #include "scenes/shapes.h"
 #include "tests/bullet/drop_world.h"
+#include "tests/support/backends.h"
 
 namespace drape::test
 {
@@ -42,9 +43,7 @@ const Harm kHarms[] = {{"velocity NaN", [](btSoftBody& cloth) { cloth.m_nodes[kN
 // one.
 void expectIsolated(SolverPlace place, bool hasBox, const Harm& harm)
 {
-    Settings settings = place == SolverPlace::Host ? hostSettings() : Settings();
-    settings.m_solverPlace = place;
-    Plugin plugin(settings);
+    Plugin plugin(settingsFor(place));
     MeshShape box(makeBox(2, 0.2f, 2));
     DropWorld world(&plugin);
     if (hasBox) world.addObstacle(box.shape());

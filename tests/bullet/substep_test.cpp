@@ -430,9 +430,7 @@ TEST(Substeps, ANodeThatIsNoNumberDoesNotSpread)
     {
         for (const Harm harm : {Harm::Velocity, Harm::Position, Harm::LinkLength})
         {
-            Settings settings = place == SolverPlace::Host ? hostSettings() : Settings();
-            settings.m_solverPlace = place;
-            Plugin plugin(settings);
+            Plugin plugin(settingsFor(place));
             MeshShape box(makeBox(2, 0.2f, 2));
             DropWorld world(&plugin);
             world.addObstacle(box.shape());
@@ -483,9 +481,7 @@ namespace
 // the least and the most x (m) of its lower edge.
 std::pair<btScalar, btScalar> swing(SolverPlace place, bool hasWall)
 {
-    Settings settings = place == SolverPlace::Host ? hostSettings() : Settings();
-    settings.m_solverPlace = place;
-    Plugin plugin(settings);
+    Plugin plugin(settingsFor(place));
     MeshShape wall(makeBox(1, 8, 8));
     DropWorld world(&plugin);
     const btTransform pose(btQuaternion::getIdentity(), btVector3(btScalar(0.527), 0, 0));

@@ -147,7 +147,7 @@ TEST(BackgroundStart, EndsWithItsPluginAtAnyTime)
 // PoCL's own cache is empty, so that it compiles. Caches of other drivers may be full.
 TEST(BackgroundStart, TellsHowLongKernelsWereCompiled)
 {
-    if (!isDeviceExpected() || listDevices()[0].m_platform != kPoclPlatform) GTEST_SKIP();
+    if (!isDeviceExpected()) GTEST_SKIP();
     inOwnProcess(
         []
         {
@@ -159,6 +159,7 @@ TEST(BackgroundStart, TellsHowLongKernelsWereCompiled)
             settings.m_log = [&](const char* line) { lines.push_back(line); };
             Plugin plugin(settings);
             plugin.awaitDevice();
+            if (listDevices()[0].m_platform != kPoclPlatform) return;
             ASSERT_EQ(lines.size(), 1u);
             EXPECT_NE(lines[0].find("the kernels for " + listDevices()[0].m_name + " were compiled in "),
                       std::string::npos)

@@ -40,6 +40,14 @@ std::vector<BackendCase> allBackends()
     return cases;
 }
 
+Settings settingsFor(SolverPlace place)
+{
+    Settings settings;
+    settings.m_solverPlace = place;
+    settings.m_backend = place == SolverPlace::Device && isDeviceExpected() ? Backend::OpenCl : Backend::Host;
+    return settings;
+}
+
 std::string backendName(const testing::TestParamInfo<BackendCase>& info)
 {
     return info.param.m_name;

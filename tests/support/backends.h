@@ -26,6 +26,9 @@ struct BackendCase
 std::vector<BackendCase> openClBackends();  // at least one; perhaps missing
 std::vector<BackendCase> allBackends();     // the host first
 
+// Returns settings with which cloth is solved on the host alone, or on an OpenCL device if one is expected.
+Settings settingsFor(SolverPlace place);
+
 // Names the cases of INSTANTIATE_TEST_SUITE_P.
 std::string backendName(const testing::TestParamInfo<BackendCase>& info);
 void PrintTo(const BackendCase& backend, std::ostream* stream);
