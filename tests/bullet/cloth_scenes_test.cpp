@@ -53,6 +53,26 @@ TEST_P(ClothScenes, NoTwoTrianglesMeet)
     }
 }
 
+TEST(ClothScene, AnyNumberOfThreadsGivesTheSameBits)
+{
+    std::vector<std::vector<float>> ends;
+    for (const unsigned threads : {1u, 2u, 7u})
+    {
+        ClothScene scene;
+        ASSERT_TRUE(makeClothScene("towel", ClothSceneSize(), 1, scene));
+        scene.m_thickness *= 1.5;  // so that all layers touch at once
+        Settings settings = hostSettings();
+        settings.m_threads = threads;
+        Plugin plugin(settings);
+        SceneWorld world(scene, plugin);
+        for (int step = 0; step < 4; ++step)
+            world.step(kSceneStep);
+        EXPECT_GT(plugin.statistics().m_selfContacts, 3000u);  // enough for threads to share their rows
+        ends.push_back(world.positions());
+        EXPECT_EQ(ends.back(), ends.front()) << threads;
+    }
+}
+
 // Held nodes go where the scene says, and fall once it lets them go.
 TEST(ClothScene, HeldNodesGoWithTheScene)
 {

@@ -211,6 +211,30 @@ TEST(SelfCollision, ASheetSlidesOverAnotherAtTheSpeedThatFrictionLeaves)
     }
 }
 
+// The app moves a pinned sheet through the place of a free one, by less than the thickness a step and by more.
+TEST(SelfCollision, APinnedSheetThatTheAppMovesCarriesAnotherAlong)
+{
+    for (const float share : {0.5f, 1.5f})
+    {
+        Layers layers(hostSettings(), 2, 0.03f);
+        layers.turnGravityOff();
+        btSoftBody &pinned = *layers.m_cloths[0], &free = *layers.m_cloths[1];
+        for (int i = 0; i < pinned.m_nodes.size(); ++i)
+            pinned.setMass(i, 0);
+        SelfIntersections check(layers.joined());
+        layers.m_world.step();  // before the first step nobody knows where the sheet comes from
+        for (int step = 0; step < 20; ++step)
+        {
+            for (int i = 0; i < pinned.m_nodes.size(); ++i)
+                pinned.m_nodes[i].m_x += btVector3(0, btScalar(2 * share * kMargin), 0);
+            layers.m_world.step();
+            EXPECT_EQ(layers.m_plugin.statistics().m_clothPairsMeeting, 0u) << share << " " << step;
+            ASSERT_TRUE(check.find(layers.positions()).empty()) << share << " " << step;
+        }
+        EXPECT_GT(lowestOf(free), pinned.m_nodes[0].m_x.y()) << share;
+    }
+}
+
 // Rows that recover the whole depth in one step make cloth in many folds fly apart.
 TEST(SelfCollision, SheetsThatStartTooCloseRecoverSlowly)
 {

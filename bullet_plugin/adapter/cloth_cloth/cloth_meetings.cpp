@@ -173,8 +173,8 @@ bool ClothMeetings::startsAtLastEnds() const
 {
     if (m_lastEnds.size() != 3 * m_set.nodeCount()) return false;
     for (std::size_t node = 0; node < m_isHeld.size(); ++node)
-        if (!m_isHeld[node] &&
-            !std::equal(m_set.start() + 3 * node, m_set.start() + 3 * node + 3, m_lastEnds.begin() + 3 * long(node)))
+        if (!m_isHeld[node] && !std::equal(m_set.start() + 3 * node, m_set.start() + 3 * node + 3,
+                                           m_lastEnds.begin() + 3 * std::ptrdiff_t(node)))
             return false;
     return true;
 }

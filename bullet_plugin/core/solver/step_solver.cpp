@@ -266,18 +266,17 @@ void StepSolver::holdOthers()
                      });
 }
 
-// Brings nodes to rest that hardly moved. Only for cloths that a contact pushed in this step, with an obstacle or with
-// cloth, all of whose obstacles rest, and that touch no rigid body: momentum goes to the obstacle. Closing sweeps
-// follow, so that the contacts hold.
+// Brings nodes to rest that hardly moved. Only for cloths that a contact pushed in this step, all of whose obstacles
+// rest, and that touch no rigid body: momentum goes to the obstacle. Closing sweeps follow, so that the contacts hold.
 void StepSolver::settle()
 {
-    const auto isSettled = [this](const ContactSweep* sweep)
+    const auto isSettled = [](const ContactSweep* sweep)
     {
         const SolverCloth& cloth = sweep->cloth();
         return cloth.m_substeps && cloth.m_substeps->settles() && !cloth.m_rigid && obstaclesRest(sweep) &&
-               (sweep->hasPushed() || (cloth.m_meetsCloth && m_rows->havePushed()));
+               sweep->hasPushed();
     };
-    select(m_all, m_turn, isSettled);
+    select(m_touching, m_turn, isSettled);
     const auto settleNodes = [](ContactSweep& sweep)
     {
         SolverNodes& nodes = sweep.nodes();

@@ -195,11 +195,6 @@ void ClothRows::project(int sweeps, float relaxation, float tolerated, float eno
     }
 }
 
-bool ClothRows::havePushed() const
-{
-    return std::any_of(m_rows.begin(), m_rows.end(), [](const Row& row) { return row.m_row.m_multiplier > 0.0f; });
-}
-
 // Removes from the nodes' velocities what the row gained; see limitSpeeds().
 void ClothRows::limitSpeed(Row& row, float perSecond)
 {

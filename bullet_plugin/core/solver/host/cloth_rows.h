@@ -53,8 +53,6 @@ public:
     // Projects the rows that take part `sweeps` times, or until no violation exceeds `enough`. relaxation: share of a
     // violation that is corrected. tolerated: violation that may remain. All are shares of the thickness.
     void project(int sweeps, float relaxation, float tolerated = 0, float enough = 0);
-    // Returns whether a row has pushed since the last begin().
-    bool havePushed() const;
     // Removes from the nodes' velocities what rows gained by recovering a depth that the step began with. perSecond:
     // 1/s, steps per second.
     void limitSpeeds(float perSecond);
