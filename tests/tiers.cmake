@@ -9,7 +9,7 @@
 set(slow_tests
   "*/SettledBunny.*:*/SettledPile.*:*/SettledCloth.*sphere_108*:*/SettledCloth.*sphere_115*"
   "*/BunnyDrop.*/10:*/BunnyDrop.*/50:*/Soak.TenThousand*:*/QueryLimitsTest.Row11HundredThousand*"
-  "*/WorldRows.Row25*:BackgroundStart.TellsHowLong*")
+  "*/WorldRows.Row25*:BackgroundStart.TellsHowLong*:SelfCollision.AStackOfTen*")
 string(JOIN ":" slow_tests ${slow_tests})
 
 # Tests that measure time run alone.

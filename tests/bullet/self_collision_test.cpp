@@ -91,6 +91,25 @@ Settings withThreads(unsigned threads)
     settings.m_threads = threads;
     return settings;
 }
+
+// Returns the highest mean speed, m/s, of a node of `count` sheets in a stack on a box, over `steps` steps.
+double creepOfStack(int count, int steps)
+{
+    MeshShape box(makeBox(4, 1, 4));
+    Layers layers(hostSettings(), count, 0.022f);
+    layers.m_world.addObstacle(box.shape());
+    layers.m_world.step(180);
+    const std::vector<float> before = layers.positions();
+    layers.m_world.step(steps);
+    const std::vector<float> after = layers.positions();
+    EXPECT_TRUE(SelfIntersections(layers.joined()).find(after).empty());
+    double most = 0;
+    for (std::size_t i = 0; i < before.size(); i += 3)
+        most = std::max(most,
+                        std::hypot(double(after[i]) - double(before[i]), double(after[i + 1]) - double(before[i + 1]),
+                                   double(after[i + 2]) - double(before[i + 2])));
+    return most / (steps * double(kDt));
+}
 }  // namespace
 
 TEST(SelfCollision, LayersOnASphereNeverMeetWithAnyNumberOfThreads)
@@ -140,6 +159,17 @@ TEST(SelfCollision, TheHighestLayerRestsAThicknessAboveEachLowerOne)
         EXPECT_NEAR(double(lowestOf(*layers.m_cloths[std::size_t(k)])), top + k * double(kThickness), 0.002) << k;
     for (const btSoftBody* cloth : layers.m_cloths)
         EXPECT_LT(rmsSpeed(*cloth), 0.01);
+}
+
+TEST(SelfCollision, AStackOfFourSheetsStays)
+{
+    EXPECT_LT(creepOfStack(4, 60), 1e-4);
+}
+
+// Takes a minute.
+TEST(SelfCollision, AStackOfTenSheetsStays)
+{
+    EXPECT_LT(creepOfStack(10, 300), 1e-4);
 }
 
 TEST(SelfCollision, SheetsSideBySideFallFreely)

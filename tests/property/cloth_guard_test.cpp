@@ -192,6 +192,27 @@ TEST(ClothGuard, AHeldSheetPushesTheOtherAside)
     EXPECT_EQ(sheets.meetingAt(check, 1), 0u);
 }
 
+// Nodes that a held sheet carries count as held for those behind them.
+TEST(ClothGuard, AHeldSheetPushesAStackAside)
+{
+    ThreadTeam threads(2);
+    constexpr int kSheets = 5;
+    Sheets sheets(kSheets, 9, 1, 0.03f);
+    SelfIntersections check(sheets.m_joined);
+    ClothGuard guard;
+    const std::size_t nodes = sheets.m_set.firstNode(1);
+    std::fill(sheets.m_held.begin(), sheets.m_held.begin() + std::ptrdiff_t(nodes), 1);
+    std::vector<float> ends = sheets.m_now;
+    for (std::size_t i = 1; i < 3 * nodes; i += 3)
+        ends[i] += 0.2f;
+    const GuardResult result = sheets.moveTo(ends, guard, threads);
+    EXPECT_EQ(result.m_forced, 0u);
+    for (std::size_t node = nodes; node < kSheets * nodes; ++node)
+        EXPECT_TRUE(guard.isCarried(node)) << node;
+    EXPECT_EQ(sheets.meetingAt(check, 0.5f), 0u);
+    EXPECT_EQ(sheets.meetingAt(check, 1), 0u);
+}
+
 TEST(ClothGuard, ASheetThatHeldOnesCloseInOnIsCounted)
 {
     ThreadTeam threads(2);

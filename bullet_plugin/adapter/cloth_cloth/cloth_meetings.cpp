@@ -105,6 +105,7 @@ void ClothMeetings::begin(const Bodies& bodies, const std::function<bool(const b
     if (layout != m_layout || m_set.memberCount() != m_members.size())
     {
         assignSet();
+        m_rows.clear(false);
         m_lastEnds.clear();
     }
     m_layout = layout;
@@ -137,8 +138,9 @@ void ClothMeetings::forNodes(const Write& write)
             write(m_members[i], m_members[i].m_body->m_nodes[k], m_set.firstNode(i) + std::size_t(k));
 }
 
-void ClothMeetings::addRow(const SelfContactView& view)
+void ClothMeetings::addRow(const Contact& found)
 {
+    const SelfContactView view = m_set.view(found);
     const int split = view.m_kind == DRAPE_SELF_EDGE_EDGE ? 2 : 1;
     const std::size_t first = m_set.memberOf(std::size_t(view.m_nodes[0]));
     const std::size_t second = m_set.memberOf(std::size_t(view.m_nodes[3]));
@@ -146,6 +148,7 @@ void ClothMeetings::addRow(const SelfContactView& view)
                                     std::uint32_t(view.m_nodes[2]), std::uint32_t(view.m_nodes[3])};
     if (!isGuarded(nodes)) return;
     ClothContact contact = {};
+    contact.m_key = std::uint64_t(found.m_featureIndex) << 32 | found.m_obstacleFeature;
     contact.m_split = split;
     bool moves = false;
     for (int k = 0; k < 4; ++k)
@@ -241,7 +244,7 @@ bool ClothMeetings::isGuarded(const std::uint32_t nodes[4]) const
 
 ClothRows& ClothMeetings::find(const NodesOf& nodesOf)
 {
-    m_rows.clear();
+    m_rows.clear(true);
     for (Member& member : m_members)
     {
         member.m_nodes = member.m_isStepped ? nodesOf(*member.m_body) : nullptr;
@@ -263,7 +266,7 @@ ClothRows& ClothMeetings::find(const NodesOf& nodesOf)
                             m_contacts))
         m_contacts.clear();
     for (const Contact& contact : m_contacts)
-        addRow(m_set.view(contact));
+        addRow(contact);
     std::vector<Vec3> starts(m_rows.empty() ? 0 : m_set.nodeCount());
     for (std::size_t node = 0; node < starts.size(); ++node)
         starts[node] = vec3Load(m_set.start(), std::uint32_t(node));

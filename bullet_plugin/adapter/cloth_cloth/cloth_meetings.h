@@ -59,7 +59,7 @@ private:
     float thicknessOf(std::size_t a, std::size_t b) const;
     template <class Write>
     void forNodes(const Write& write);
-    void addRow(const SelfContactView& contact);
+    void addRow(const Contact& found);
     bool startsAtLastEnds() const;
     void startHeldNodes();
     void checkStarts();

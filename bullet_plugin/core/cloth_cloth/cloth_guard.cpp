@@ -10,7 +10,7 @@ namespace
 {
 constexpr int kMostRounds = 8;
 // Maximum number of times that held nodes carry others along in a step.
-constexpr int kMostCarries = 4;
+constexpr int kMostCarries = 16;
 // Minimum pairs for sharing them among threads, and the pairs of a range.
 constexpr std::size_t kLeastShared = 1024, kRange = 256;
 
@@ -58,7 +58,7 @@ void ClothGuard::takePairs(const ClothSet& set, const std::vector<unsigned char>
         {
             pair.m_paths.m_start[k] = pointAt(set.start(), pair.m_nodes[k]);
             pair.m_paths.m_end[k] = pointAt(set.end(), pair.m_nodes[k]);
-            pair.m_paths.m_isHeld[k] = isHeld[pair.m_nodes[k]] != 0;
+            pair.m_paths.m_isHeld[k] = isHeld[pair.m_nodes[k]] || m_isLeading[pair.m_nodes[k]];
         }
         pair.m_clearance = clearanceOf(set, m_tests[i], pair.m_paths);
         pair.m_rests = pair.m_needsPlane = false;
@@ -126,33 +126,52 @@ bool ClothGuard::isForced(const Guarded& pair)
     return false;
 }
 
-// Moves the plane as far as one feature's held nodes push it, and the ends of the other's free nodes with it. Returns
-// whether an end moved.
-bool ClothGuard::carry(const Guarded& pair)
+// Returns the feature of a forced pair that goes out of the way: 0, 1, or -1 if neither can. Beside held nodes it is the
+// other one. Of two features that are pushed, it is the one in front.
+int ClothGuard::yielding(const Guarded& pair) const
 {
     const int split = pair.m_paths.m_split;
-    double pushed[2] = {0, 0};  // m, by the held nodes of the first feature and of the second
+    bool isHeld[2] = {false, false};
+    double forward = 0;  // to the first feature's side
     for (int k = 0; k < 4; ++k)
-        if (pair.m_paths.m_isHeld[k])
-            pushed[k >= split] =
-                std::max(pushed[k >= split], lackingDistance(pair.m_plane, pair.m_paths, k, pair.m_paths.m_end[k]));
-    if ((pushed[0] > 0) == (pushed[1] > 0)) return false;
-    const bool pushesFirst = pushed[1] > 0;
-    bool moved = false;
-    for (int k = pushesFirst ? 0 : split; k < (pushesFirst ? split : 4); ++k)
     {
-        float* const end = m_ends.data() + 3 * pair.m_nodes[k];
-        const Vec3d back = (pushesFirst ? -1 : 1) * (pushed[pushesFirst] + pair.m_clearance) * pair.m_plane.m_normal;
+        const bool isSecond = k >= split;
+        isHeld[isSecond] = isHeld[isSecond] || (*m_isHeld)[pair.m_nodes[k]];
+        const Vec3d way = pair.m_paths.m_end[k] - pair.m_paths.m_start[k];
+        forward += dot(pair.m_plane.m_normal, way) / (isSecond ? 4 - split : split);
+    }
+    if (isHeld[0] || isHeld[1]) return isHeld[0] && isHeld[1] ? -1 : int(isHeld[0]);
+    return forward > 0 ? 0 : 1;
+}
+
+// Moves the plane as far as one feature pushes it, and the ends of the other's free nodes with it. These lead from now
+// on. Returns whether a node is to go elsewhere.
+bool ClothGuard::carry(const Guarded& pair)
+{
+    const int split = pair.m_paths.m_split, yields = yielding(pair);
+    if (yields < 0) return false;
+    double pushed = 0;  // m
+    for (int k = 0; k < 4; ++k)
+        if (pair.m_paths.m_isHeld[k] && (k >= split) != (yields == 1))
+            pushed = std::max(pushed, lackingDistance(pair.m_plane, pair.m_paths, k, pair.m_paths.m_end[k]));
+    bool moved = false;
+    for (int k = yields == 0 ? 0 : split; k < (yields == 0 ? split : 4); ++k)
+    {
+        const std::uint32_t node = pair.m_nodes[k];
+        if ((*m_isHeld)[node]) continue;
+        float* const end = m_ends.data() + 3 * node;
+        const double side = yields == 0 ? 1 : -1;
         // The end has to be as far from the moved plane as this place is from the resting one.
-        const double lacking =
-            lackingDistance(pair.m_plane, pair.m_paths, k, pointAt(m_ends.data(), pair.m_nodes[k]) + back);
-        if (pair.m_paths.m_isHeld[k] || !(lacking > 0)) continue;
-        const Vec3d by = (pushesFirst ? 1 : -1) * lacking * pair.m_plane.m_normal;
+        const Vec3d back = -side * (pushed + pair.m_clearance) * pair.m_plane.m_normal;
+        const double lacking = lackingDistance(pair.m_plane, pair.m_paths, k, pointAt(m_ends.data(), node) + back);
+        moved = moved || lacking > 0 || m_shares[node] < 1;
+        m_isLeading[node] = 1;
+        if (!(lacking > 0)) continue;
+        const Vec3d by = side * lacking * pair.m_plane.m_normal;
         end[0] += float(by.x);
         end[1] += float(by.y);
         end[2] += float(by.z);
-        m_isCarried[pair.m_nodes[k]] = 1;
-        moved = true;
+        m_isCarried[node] = 1;
     }
     return moved;
 }
@@ -168,15 +187,33 @@ bool ClothGuard::carryForced()
 GuardResult ClothGuard::apply(ClothSet& set, const std::vector<unsigned char>& isHeld, const IsGuarded& isGuarded,
                               std::uint64_t limit, ThreadTeam& threads)
 {
-    m_ends.assign(set.end(), set.end() + 3 * set.nodeCount());
-    m_isCarried.assign(set.nodeCount(), 0);
+    const std::vector<float> ends(set.end(), set.end() + 3 * set.nodeCount());
+    const auto restart = [&]
+    {
+        m_ends = ends;
+        m_isCarried.assign(set.nodeCount(), 0);
+        m_isLeading.assign(set.nodeCount(), 0);
+    };
+    m_isHeld = &isHeld;
+    restart();
     set.allowSmooth();
+    bool mayCarry = true;
+    std::size_t forcedAtFirst = 0;
     for (int carries = 0;;)
     {
         const GuardResult result = applyOnce(set, isHeld, isGuarded, limit, threads);
-        const bool carried = result.m_forced > 0 && carries++ < kMostCarries && carryForced();
+        if (carries == 0) forcedAtFirst = result.m_forced;
+        bool again = mayCarry && result.m_forced > 0 && carries < kMostCarries && carryForced();
+        carries += again;
+        if (!again && mayCarry && result.m_forced > forcedAtFirst)
+        {
+            // Nodes that lead came where there is no room.
+            restart();
+            mayCarry = false;
+            again = true;
+        }
         // Shortened paths may need pairs that findPairs() left out. Each turn lists more of them.
-        if (!carried && (result.m_shortened == 0 || result.m_tooMany || set.staysSmooth(threads))) return result;
+        if (!again && (result.m_shortened == 0 || result.m_tooMany || set.staysSmooth(threads))) return result;
         std::copy(m_ends.begin(), m_ends.end(), set.end());
     }
 }

@@ -11,7 +11,8 @@
 // allow. Shorter paths change what other pairs need, so all are checked again until nothing changes. After
 // kMostRounds every pair gets a resting plane. A node that stays where it started is on its side of all of them. Held
 // nodes stay on theirs only if they move little. Where they do not, the other feature is carried along: the ends of its
-// free nodes move with the plane, and all pairs are checked anew.
+// free nodes move with the plane, and all pairs are checked anew. Nodes that are carried then count as held, so that
+// they carry what lies behind them. If more pairs are forced in the end than without carrying, none is carried.
 #pragma once
 
 #include <cstddef>
@@ -71,13 +72,16 @@ private:
     bool shorten(const ClothSet& set, bool rounded);
     void place(ClothSet& set) const;
     static bool isForced(const Guarded& pair);
+    int yielding(const Guarded& pair) const;
     bool carry(const Guarded& pair);
     bool carryForced();
 
     std::vector<FeatureTest> m_tests;
     std::vector<Guarded> m_pairs;
     std::vector<double> m_shares;
-    std::vector<float> m_ends;  // ends of the whole paths
+    std::vector<float> m_ends;                             // ends of the whole paths
+    const std::vector<unsigned char>* m_isHeld = nullptr;  // the caller's, during apply()
     std::vector<unsigned char> m_isCarried;
+    std::vector<unsigned char> m_isLeading;  // by node: held nodes push it, and it pushes others as these do
 };
 }  // namespace drape

@@ -17,7 +17,7 @@ namespace
 constexpr std::size_t kLeastNodesShared = 2048;
 // Sweeps over rows of cloth with cloth, and of features beside rigid bodies, after each sweep over links. Then those of
 // cloth with cloth after the last substep.
-constexpr int kRowSweeps = 4, kClosingRowSweeps = 16;
+constexpr int kRowSweeps = 8, kClosingRowSweeps = 16;
 // Minimum nodes for sharing keepMomenta() among threads: it takes 20 ns a node.
 constexpr std::size_t kLeastKeepingShared = 8192;
 
@@ -35,6 +35,12 @@ int iterationsOf(const SolverCloth& cloth)
 float passedAfter(const SolverCloth& cloth, int iteration)
 {
     return cloth.m_substeps ? float(iteration + 1) / float(cloth.m_substeps->count()) : 1.0f;
+}
+
+// Returns the time of the cloth's substeps, s; 0 if it has none.
+float substepTime(const SolverCloth& cloth)
+{
+    return cloth.m_substeps ? cloth.m_substeps->time() / float(cloth.m_substeps->count()) : 0.0f;
 }
 
 // Returns whether the last sweep met a violation worse than `share` of the thickness.
@@ -184,7 +190,7 @@ void StepSolver::sweepInTurns()
 void StepSolver::closeRows()
 {
     if (!m_rows) return;
-    m_rows->begin(1);
+    m_rows->begin(1, 0);
     m_rows->project(kClosingRowSweeps, 1, kTolerated, kClosingTolerance);
 }
 
@@ -210,7 +216,7 @@ void StepSolver::sweepContacts(int iteration)
     m_team.forCloths(m_turn, boundShifts);
     select(m_iterating, m_turn, [](const ContactSweep* sweep) { return hasContacts(sweep) || sweep->cloth().m_rigid; });
     restart(iteration);
-    if (m_rows) m_rows->begin(passedAfter(m_all.front()->cloth(), iteration));
+    if (m_rows) m_rows->begin(passedAfter(m_all.front()->cloth(), iteration), substepTime(m_all.front()->cloth()));
     sweepInTurns();
     forRigid(m_iterating, [](RigidRows& rigid) { rigid.end(); });
     select(m_iterating, m_turn, isCallers);

@@ -16,6 +16,10 @@ constexpr float kSureDistance = 0.01f;
 // Distance beyond the resting one, as a share of the thickness, within which features may meet in a phase's sweeps.
 constexpr float kNearBy = 0.25f;
 
+// Share of a substep's pushes with which the next one starts. Those that recover a depth are among them: a stack that
+// starts with all of them hops.
+constexpr float kRepeatedShare = 0.5f;
+
 // Minimum rows for sharing them among threads, and parts of the nodes: more than threads, so that all have work.
 constexpr std::size_t kLeastShared = 2048, kParts = 32;
 
@@ -41,9 +45,20 @@ void nearestWeights(const Vec3 positions[4], int split, float weights[4])
 }
 }  // namespace
 
+void ClothRows::clear(bool keeps)
+{
+    m_kept.resize(keeps ? m_rows.size() : 0);
+    for (const Row& row : m_rows)
+        if (keeps) m_kept[row.m_order] = row.m_kept;
+    m_rows.clear();
+    m_time = 0;
+}
+
 void ClothRows::add(const ClothContact& contact)
 {
     Row row = {};
+    row.m_order = std::uint32_t(m_rows.size());
+    row.m_kept.m_key = contact.m_key;
     for (int k = 0; k < 4; ++k)
     {
         SolverNodes* const cloth = contact.m_cloths[k];
@@ -83,8 +98,21 @@ std::uint32_t ClothRows::groupOf(const Row& row) const
     return std::uint32_t(std::max<std::size_t>(group, 1));
 }
 
+// Gives the rows the pushes of the same pairs' rows in the last step.
+void ClothRows::findKept()
+{
+    auto kept = m_kept.cbegin();
+    for (Row& row : m_rows)
+    {
+        while (kept != m_kept.cend() && kept->m_key < row.m_kept.m_key)
+            ++kept;
+        if (kept != m_kept.cend() && kept->m_key == row.m_kept.m_key) row.m_kept = *kept;
+    }
+}
+
 void ClothRows::arrange(const std::vector<Vec3>& positions)
 {
+    findKept();
     const std::size_t parts = m_rows.size() >= kLeastShared ? kParts : 1;
     m_parts.cut(positions, (positions.size() + parts - 1) / parts, &m_threads);
     m_climb.resize(m_parts.leafCount());
@@ -147,21 +175,51 @@ bool ClothRows::isNear(const Row& row)
     return row.m_row.m_inverseMobility > 0.0f && violation > -kNearBy * row.m_thickness;
 }
 
-void ClothRows::begin(float passed)
+// Sets the pushes with which a substep of `time` seconds starts.
+void ClothRows::repeat(Row& row, float time)
 {
+    ContactRow& pushed = row.m_row;
+    const float scale = kRepeatedShare * time * time;
+    pushed.m_multiplier = scale * row.m_kept.m_push;
+    const Vec3 held = vec3Scale(row.m_kept.m_held, scale);
+    pushed.m_held = vec3AddScaled(held, pushed.m_normal, -vec3Dot(held, pushed.m_normal));
+}
+
+void ClothRows::begin(float passed, float time)
+{
+    const float perSquare = m_time > 0.0f ? 1.0f / (m_time * m_time) : 0.0f;
     const auto beginGroup = [&](std::size_t group)
     {
         m_nearEnds[group] = m_firsts[group];
         for (std::size_t i = m_firsts[group]; i < m_firsts[group + 1]; ++i)
         {
             Row& row = m_rows[i];
+            if (m_time > 0.0f)
+            {
+                row.m_kept.m_push = row.m_row.m_multiplier * perSquare;
+                row.m_kept.m_held = vec3Scale(row.m_row.m_held, perSquare);
+            }
             row.m_row.m_multiplier = 0.0f;
             row.m_row.m_held = vec3(0.0f, 0.0f, 0.0f);
             takePlane(row, passed);
-            if (isNear(row)) m_near[m_nearEnds[group]++] = std::uint32_t(i);
+            if (!isNear(row)) continue;
+            m_near[m_nearEnds[group]++] = std::uint32_t(i);
+            if (time > 0.0f) repeat(row, time);
         }
     };
     m_climb.run(threads(), beginGroup);
+    m_time = time;
+    if (!(time > 0.0f)) return;
+    const auto pushGroup = [&](std::size_t group)
+    {
+        for (std::size_t i = m_firsts[group]; i < m_nearEnds[group]; ++i)
+        {
+            Row& row = m_rows[m_near[i]];
+            if (row.m_row.m_multiplier > 0.0f)
+                shift(row, vec3AddScaled(row.m_row.m_held, row.m_row.m_normal, row.m_row.m_multiplier));
+        }
+    };
+    m_climb.run(threads(), pushGroup);
 }
 
 // Moves the row's nodes. by: kg m.

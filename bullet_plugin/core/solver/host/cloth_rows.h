@@ -30,6 +30,7 @@ struct ClothContact
     std::uint32_t m_nodes[4];  // index in its cloth
     std::uint32_t m_ids[4];    // index among all cloths' nodes
     Vec3 m_resting[4];         // m, positions of nodes without a cloth
+    std::uint64_t m_key;       // names the pair of features; greater than that of the contact before
     int m_split;
     Vec3 m_normal;      // unit, from the second feature to the side from which the first came
     float m_gap0;       // m, along the normal at the step's start
@@ -42,14 +43,15 @@ class ClothRows
 public:
     explicit ClothRows(ThreadTeam& threads) : m_threads(threads) {}
 
-    void clear() { m_rows.clear(); }
+    // Begins a step. keeps: its contacts' keys name the same features as those of the step before.
+    void clear(bool keeps);
     bool empty() const { return m_rows.empty(); }
     void add(const ClothContact& contact);
     // Orders the rows, after the last add(). positions: m, of all cloths' nodes.
     void arrange(const std::vector<Vec3>& positions);
-    // Begins a phase, with no pushes: takes the planes where the nodes are now. passed: share of the step that has
-    // passed at the phase's end.
-    void begin(float passed);
+    // Begins a phase: takes the planes where the nodes are now. passed: share of the step that has passed at the
+    // phase's end. time: s, of the phase's substep, which starts with the pushes of the one before; 0: with none.
+    void begin(float passed, float time);
     // Projects the rows that take part `sweeps` times, or until no violation exceeds `enough`. relaxation: share of a
     // violation that is corrected. tolerated: violation that may remain. All are shares of the thickness.
     void project(int sweeps, float relaxation, float tolerated = 0, float enough = 0);
@@ -58,6 +60,14 @@ public:
     void limitSpeeds(float perSecond);
 
 private:
+    // A row's pushes in a step's last substep, as forces.
+    struct Kept
+    {
+        std::uint64_t m_key;
+        float m_push;  // N
+        Vec3 m_held;   // N
+    };
+
     struct Row
     {
         SolverNode* m_nodes[4];  // one that does not move has no inverse mass
@@ -67,6 +77,8 @@ private:
         float m_weights[4];        // by node; the second feature's are negative
         std::uint32_t m_ids[4];    // see ClothContact
         std::uint32_t m_group;
+        std::uint32_t m_order;  // in add()'s
+        Kept m_kept;
         int m_split;        // nodes of the first feature
         float m_gap0;       // m
         float m_distance;   // m, least at the step's end
@@ -77,6 +89,8 @@ private:
     static bool isNear(const Row& row);
     static Vec3 wayOf(const Row& row);
     static void takePlane(Row& row, float passed);
+    static void repeat(Row& row, float time);
+    void findKept();
     static void shift(Row& row, Vec3 by);
     std::uint32_t groupOf(const Row& row) const;
     static void limitSpeed(Row& row, float perSecond);
@@ -88,6 +102,8 @@ private:
     ClothParts m_parts;
     GroupClimb m_climb;
     std::vector<Row> m_rows, m_unordered;
+    std::vector<Kept> m_kept;             // of the last step, by key
+    float m_time = 0;                     // s, of the last phase's substep; 0: none
     std::vector<std::size_t> m_firsts;    // by group, the first of its rows; then the end
     std::vector<std::uint32_t> m_near;    // by group, from m_firsts on: rows that take part
     std::vector<std::size_t> m_nearEnds;  // by group, in m_near
