@@ -1,7 +1,6 @@
 # clang-cl takes Clang's own options behind a prefix; Microsoft's compiler has no vector types.
 if(MSVC AND NOT CMAKE_CXX_COMPILER_ID MATCHES "Clang")
-  message(FATAL_ERROR "Drape needs Clang on Windows: cmake -T ClangCL for Visual Studio, or "
-    "-D CMAKE_CXX_COMPILER=clang-cl with Ninja. MinGW works, too.")
+  message(FATAL_ERROR "Drape needs Clang or MinGW on Windows: -G Ninja -D CMAKE_CXX_COMPILER=clang-cl")
 endif()
 
 # drape_target(<target>): how every target of this project is compiled. Nothing of it reaches a user of Drape::drape.

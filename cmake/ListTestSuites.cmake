@@ -1,5 +1,5 @@
 # Run by ctest for each test program: asks it for its tests and adds them suite by suite. DrapeTestSuites.cmake says
-# how. Input: cmake (its path), program, emulator (what runs it; may be empty), prefix, each, guest, environment, and the
+# how. Input: cmake (its path), program, emulator (runs it; may be empty), prefix, each, guest, environment, and the
 # variables of tests/tiers.cmake.
 if(NOT EXISTS "${program}")
   if(guest)
