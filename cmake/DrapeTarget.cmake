@@ -16,6 +16,11 @@ function(drape_target target)
   else()
     target_compile_options(${target} PRIVATE -Wall -Wextra -Wshadow -Wconversion -ffp-contract=off)
   endif()
+  if(MINGW AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    # Inline functions are not weak there, so that GCC takes the registers of its own copy for granted. The linker may
+    # keep another file's copy, which was compiled for another instruction set or with other optimisation.
+    target_compile_options(${target} PRIVATE -fno-ipa-ra)
+  endif()
   if(CMAKE_CXX_COMPILER_ID MATCHES "Clang")
     # GCC's -Wconversion leaves these two out.
     target_compile_options(${target} PRIVATE -Wno-sign-conversion -Wno-implicit-int-float-conversion)
