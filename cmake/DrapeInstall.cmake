@@ -1,15 +1,35 @@
-# Installs Drape::drape and Drape::recorder: libraries, public headers, CMake package and pkg-config files. Test:
-# install.consumer.
+# Installs what was built, in components: runtime (shared libraries, licence), development (static libraries, public
+# headers, CMake package, pkg-config files, documents), tools (programs). DrapePackage.cmake makes packages of them.
+# Tests: install.consumer, install.subproject, install.packages.
 include(CMakePackageConfigHelpers)
 set(DRAPE_CMAKE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/Drape)
 
+install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT runtime)
+set(tools "")
+foreach(tool cloth_drop drape_check)
+  if(TARGET ${tool})
+    list(APPEND tools ${tool})
+  endif()
+endforeach()
+if(tools)
+  install(TARGETS ${tools} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT tools)
+endif()
+# Nothing to link without the adapter.
+if(NOT DRAPE_WITH_BULLET)
+  return()
+endif()
+
+install(FILES README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT development)
+install(DIRECTORY docs/ DESTINATION ${CMAKE_INSTALL_DOCDIR}/docs COMPONENT development
+  FILES_MATCHING PATTERN "*.md" PATTERN "*.png")
 install(TARGETS drape drape_recorder EXPORT DrapeTargets
-  ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
-  LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
+  RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT runtime
+  LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT runtime NAMELINK_COMPONENT development
+  ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development
   INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(DIRECTORY bullet_plugin/include/drape recorder/include/drape
-  DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.h")
-install(EXPORT DrapeTargets NAMESPACE Drape:: DESTINATION ${DRAPE_CMAKE_DIR})
+  DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT development FILES_MATCHING PATTERN "*.h")
+install(EXPORT DrapeTargets NAMESPACE Drape:: DESTINATION ${DRAPE_CMAKE_DIR} COMPONENT development)
 
 get_target_property(DRAPE_LIBRARY_TYPE drape TYPE)
 configure_package_config_file(cmake/DrapeConfig.cmake.in ${PROJECT_BINARY_DIR}/package/DrapeConfig.cmake
@@ -17,7 +37,7 @@ configure_package_config_file(cmake/DrapeConfig.cmake.in ${PROJECT_BINARY_DIR}/p
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/package/DrapeConfigVersion.cmake
   COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/package/DrapeConfig.cmake ${PROJECT_BINARY_DIR}/package/DrapeConfigVersion.cmake
-  cmake/FindDrapeBullet.cmake DESTINATION ${DRAPE_CMAKE_DIR})
+  cmake/FindDrapeBullet.cmake DESTINATION ${DRAPE_CMAKE_DIR} COMPONENT development)
 
 # pkg-config knows a Bullet that has a module of its own. The app's own targets have none: no file is installed then.
 if(TARGET BulletSoftBody)
@@ -47,6 +67,7 @@ else()
 endif()
 # Lists the libraries that a user of the static library must link.
 if(DRAPE_LIBRARY_TYPE STREQUAL "STATIC_LIBRARY")
+  set(DRAPE_PC_STATIC " -DDRAPE_STATIC")
   set(DRAPE_PC_STATIC_LIBS " -pthread")
   foreach(library IN LISTS CMAKE_DL_LIBS)
     string(APPEND DRAPE_PC_STATIC_LIBS " -l${library}")
@@ -67,4 +88,4 @@ foreach(package drape drape-recorder)
   configure_file(cmake/${package}.pc.in ${PROJECT_BINARY_DIR}/package/${package}.pc @ONLY)
 endforeach()
 install(FILES ${PROJECT_BINARY_DIR}/package/drape.pc ${PROJECT_BINARY_DIR}/package/drape-recorder.pc
-  DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+  DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT development)

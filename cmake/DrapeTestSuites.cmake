@@ -11,6 +11,7 @@ function(drape_discover_suites target)
   file(GENERATE OUTPUT ${script} CONTENT
     "set(cmake \"${CMAKE_COMMAND}\")
 set(program \"$<TARGET_FILE:${target}>\")
+set(emulator \"${CMAKE_CROSSCOMPILING_EMULATOR}\")
 set(prefix \"${arg_PREFIX}\")
 set(each ${arg_EACH})
 set(guest ${arg_GUEST})

@@ -1,5 +1,6 @@
 # Run by ctest for each test program: asks it for its tests and adds them suite by suite. DrapeTestSuites.cmake says
-# how. Input: cmake (its path), program, prefix, each, guest, environment, and the variables of tests/tiers.cmake.
+# how. Input: cmake (its path), program, emulator (runs it; may be empty), prefix, each, guest, environment, and the
+# variables of tests/tiers.cmake.
 if(NOT EXISTS "${program}")
   if(guest)
     return()
@@ -11,9 +12,10 @@ endif()
 
 # Sets `result` to the tests that match the filter, one "suite.test" an element.
 function(drape_list_tests result filter)
-  execute_process(COMMAND "${cmake}" -E env ${environment} "${program}" --gtest_list_tests "--gtest_filter=${filter}"
+  execute_process(COMMAND "${cmake}" -E env ${environment} ${emulator} "${program}" --gtest_list_tests
+      "--gtest_filter=${filter}"
     OUTPUT_VARIABLE lines COMMAND_ERROR_IS_FATAL ANY)
-  string(REGEX REPLACE " *#[^\n]*" "" lines "${lines}")
+  string(REGEX REPLACE " *#[^\n]*|\r" "" lines "${lines}")
   string(REGEX MATCHALL "[^\n]+" lines "${lines}")
   set(tests "")
   foreach(line IN LISTS lines)
@@ -45,7 +47,7 @@ function(drape_add_suites suffix wanted others)
       endif()
     endif()
     set(test "${prefix}.${name}${suffix}")
-    add_test("${test}" "${program}" "--gtest_filter=${filter}-${others}" --gtest_brief=1)
+    add_test("${test}" ${emulator} "${program}" "--gtest_filter=${filter}-${others}" --gtest_brief=1)
     set(tier fast)
     if(guest OR suffix STREQUAL ".slow")
       set(tier slow)

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
-# Installs the Debian 12 / Ubuntu 24.04 packages that Drape needs: install_packages.sh [--tools]
+# Installs the Debian 12 / Ubuntu 24.04 packages that Drape needs: install_packages.sh [--tools | --mingw]
 #
-# For the library and its tools with --tools; else for benchmarks, the Python module and tests, too.
+# For the library and its tools with --tools; for tests/run_mingw.sh alone with --mingw; else for benchmarks, the Python
+# module and tests, too.
 # Calls apt only when dpkg says that something is missing, with sudo when not root. Fails, naming the packages, when
 # something is missing and cannot be installed. The one list of packages.
 set -euo pipefail
@@ -30,7 +31,15 @@ further=(
 )
 # The test of replay pages needs a browser, which Ubuntu has no package of.
 grep -qs '^ID=debian$' /etc/os-release && further+=(chromium)
-[[ ${1:-} == --tools ]] || packages+=("${further[@]}")
+case ${1:-} in
+  "") packages+=("${further[@]}") ;;
+  --tools) ;;
+  # The core for Windows: compiler, tests' sources, and what runs them.
+  --mingw)
+    packages=(cmake make ninja-build pkgconf g++-mingw-w64-x86-64-posix googletest nlohmann-json3-dev wine wine64)
+    ;;
+  *) echo "install_packages.sh: $1 is no option; --tools and --mingw are" >&2; exit 2 ;;
+esac
 
 if ! command -v dpkg-query >/dev/null; then
   echo "No dpkg here: cannot check for these packages (Debian names): ${packages[*]}" >&2

@@ -5,7 +5,11 @@
 
 #include <fcntl.h>
 #include <sys/stat.h>
+#ifdef _WIN32
+#include <io.h>
+#else
 #include <unistd.h>
+#endif
 
 namespace drape
 {
@@ -13,11 +17,37 @@ namespace
 {
 constexpr std::size_t kBlockBytes = std::size_t(1) << 20;
 
+#ifdef _WIN32
+constexpr int kOpenFlags = O_RDONLY | O_BINARY;
+using ReadCount = int;
+using ReadSize = unsigned;
+bool isPipe(unsigned mode)
+{
+    return (mode & S_IFMT) == S_IFIFO;
+}
+bool isSocket(unsigned)
+{
+    return false;
+}
+#else
+// Without O_NONBLOCK a named pipe would wait for a writer.
+constexpr int kOpenFlags = O_RDONLY | O_CLOEXEC | O_NONBLOCK;
+using ReadCount = ssize_t;
+using ReadSize = std::size_t;
+bool isPipe(mode_t mode)
+{
+    return S_ISFIFO(mode);
+}
+bool isSocket(mode_t mode)
+{
+    return S_ISSOCK(mode);
+}
+#endif
+
 class OpenFile
 {
 public:
-    // Without O_NONBLOCK a named pipe would wait for a writer.
-    explicit OpenFile(const std::string& path) : m_file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {}
+    explicit OpenFile(const std::string& path) : m_file(::open(path.c_str(), kOpenFlags)) {}
     ~OpenFile()
     {
         if (m_file >= 0) ::close(m_file);
@@ -32,12 +62,13 @@ private:
 };
 
 // Returns the name of the kind of a file that is not a regular file; null for a regular file.
-const char* kindOf(mode_t mode)
+template <class Mode>
+const char* kindOf(Mode mode)
 {
-    if (S_ISREG(mode)) return nullptr;
-    if (S_ISDIR(mode)) return "folder";
-    if (S_ISFIFO(mode)) return "pipe";
-    if (S_ISSOCK(mode)) return "socket";
+    if ((mode & S_IFMT) == S_IFREG) return nullptr;
+    if ((mode & S_IFMT) == S_IFDIR) return "folder";
+    if (isPipe(mode)) return "pipe";
+    if (isSocket(mode)) return "socket";
     return "device";
 }
 
@@ -62,7 +93,7 @@ std::string readWholeFile(const std::string& path, const std::string& what, std:
     bytes.resize(static_cast<std::size_t>(status.st_size) + 1);
     for (;;)
     {
-        const ssize_t count = ::read(file.get(), &bytes[length], bytes.size() - length);
+        const ReadCount count = ::read(file.get(), &bytes[length], static_cast<ReadSize>(bytes.size() - length));
         if (count < 0 && errno == EINTR) continue;
         if (count < 0) return errorText();
         if (count == 0) break;

@@ -2,11 +2,10 @@
 
 #include <cerrno>
 #include <cstdio>
-#include <cstring>
 #include <filesystem>
+#include <system_error>
 
-#include <sys/stat.h>
-#include <unistd.h>
+#include "bullet_plugin/core/platform/file_access.h"
 
 namespace drape
 {
@@ -18,12 +17,12 @@ namespace fs = std::filesystem;
 struct Target
 {
     fs::path m_path;           // no link, of a file
-    struct stat m_status;      // status of the existing file
-    int m_code = 0;            // why there is nothing: ENOENT, or worse
+    fs::file_status m_status;  // status of the existing file
+    std::error_code m_code;    // why there is nothing: no such file, or worse
     bool m_isInPlace = false;  // written where it is
 
-    bool isThere() const { return m_code == 0; }
-    bool canBeMade() const { return m_code == ENOENT; }
+    bool isThere() const { return !m_code; }
+    bool canBeMade() const { return m_code == std::errc::no_such_file_or_directory; }
 };
 
 bool fail(const std::string& path, const std::string& reason, std::string& error)
@@ -32,9 +31,14 @@ bool fail(const std::string& path, const std::string& reason, std::string& error
     return false;
 }
 
-bool fail(const std::string& path, int code, std::string& error)
+bool fail(const std::string& path, std::error_code code, std::string& error)
 {
-    return fail(path, std::strerror(code), error);
+    return fail(path, code.message(), error);
+}
+
+std::error_code lastError()
+{
+    return std::error_code(errno, std::generic_category());
 }
 
 // Resolves links in the existing part of the path.
@@ -51,7 +55,7 @@ fs::path followed(const fs::path& link)
 {
     std::error_code code;
     fs::path path = inRealFolder(link);
-    while (fs::is_symlink(path, code) && path.string().rfind("/proc/", 0) != 0)
+    while (fs::is_symlink(path, code) && path.generic_string().rfind("/proc/", 0) != 0)
         path = inRealFolder(path.parent_path() / fs::read_symlink(path, code));  // an absolute one replaces it
     return path;
 }
@@ -59,24 +63,24 @@ fs::path followed(const fs::path& link)
 Target targetOf(const std::string& path)
 {
     Target target;
-    if (::stat(path.c_str(), &target.m_status) != 0) target.m_code = errno;
+    target.m_status = fs::status(path, target.m_code);
     target.m_path = path;
     if (!target.isThere() && !target.canBeMade()) return target;  // links that go round in a circle among others
     target.m_path = followed(path);
     std::error_code code;
-    target.m_isInPlace = target.isThere() && (!S_ISREG(target.m_status.st_mode) || fs::is_symlink(target.m_path, code));
+    target.m_isInPlace =
+        target.isThere() && (!fs::is_regular_file(target.m_status) || fs::is_symlink(target.m_path, code));
     return target;
 }
 
-// Returns 0 or the error's number.
-int writeTo(const std::string& path, const std::string& bytes)
+std::error_code writeTo(const fs::path& path, const std::string& bytes)
 {
-    std::FILE* file = std::fopen(path.c_str(), "wb");
-    if (file == nullptr) return errno;
+    std::FILE* file = std::fopen(path.string().c_str(), "wb");
+    if (file == nullptr) return lastError();
     const bool written = std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size() && std::fflush(file) == 0;
-    const int code = errno;
-    if (std::fclose(file) != 0 && written) return errno;
-    return written ? 0 : code;
+    const std::error_code code = lastError();
+    if (std::fclose(file) != 0 && written) return lastError();
+    return written ? std::error_code() : code;
 }
 }  // namespace
 
@@ -84,22 +88,22 @@ bool canWriteFile(const std::string& path, std::string& error)
 {
     const Target target = targetOf(path);
     if (!target.isThere() && !target.canBeMade()) return fail(path, target.m_code, error);
-    if (target.isThere() && S_ISDIR(target.m_status.st_mode)) return fail(path, "is a folder", error);
-    if (target.isThere() && ::access(target.m_path.c_str(), W_OK) != 0) return fail(path, errno, error);
+    if (target.isThere() && fs::is_directory(target.m_status)) return fail(path, "is a folder", error);
+    const std::error_code reason = target.isThere() ? whyNotWritable(target.m_path) : std::error_code();
+    if (reason) return fail(path, reason, error);
     if (target.m_isInPlace) return true;
     std::error_code code;
     const fs::path folder = target.m_path.has_parent_path() ? target.m_path.parent_path() : fs::path(".");
     if (!fs::is_directory(folder, code)) return fail(path, "no folder " + folder.string(), error);
-    return ::access(folder.c_str(), W_OK) == 0 || fail(path, errno, error);
+    code = whyNotWritable(folder);
+    return !code || fail(path, code, error);
 }
 
 bool areOneFile(const std::string& one, const std::string& other)
 {
     const Target a = targetOf(one), b = targetOf(other);
     if (a.isThere() != b.isThere()) return false;
-    if (a.isThere())
-        return a.m_status.st_dev == b.m_status.st_dev && a.m_status.st_ino == b.m_status.st_ino &&
-               !S_ISCHR(a.m_status.st_mode);
+    if (a.isThere()) return isSameFile(one, other) && !fs::is_character_file(a.m_status);
     std::error_code code;
     const auto placeOf = [&code](const Target& target)
     { return fs::weakly_canonical(fs::absolute(target.m_path, code), code); };
@@ -111,17 +115,20 @@ bool writeFileAtomically(const std::string& path, const std::string& bytes, std:
     const Target target = targetOf(path);
     if (target.m_isInPlace)
     {
-        const int code = writeTo(target.m_path, bytes);
-        return code == 0 || fail(path, code, error);
+        const std::error_code code = writeTo(target.m_path, bytes);
+        return !code || fail(path, code, error);
     }
     if (!target.isThere() && !target.canBeMade()) return fail(path, target.m_code, error);
-    if (target.isThere() && ::access(target.m_path.c_str(), W_OK) != 0) return fail(path, errno, error);
-    const std::string temporary = target.m_path.string() + ".part" + std::to_string(::getpid());
-    int code = writeTo(temporary, bytes);
-    if (code == 0 && target.isThere() && ::chmod(temporary.c_str(), target.m_status.st_mode & 07777) != 0) code = errno;
-    if (code == 0 && std::rename(temporary.c_str(), target.m_path.c_str()) != 0) code = errno;
-    if (code == 0) return true;
-    std::remove(temporary.c_str());
+    std::error_code code = target.isThere() ? whyNotWritable(target.m_path) : std::error_code();
+    if (code) return fail(path, code, error);
+    fs::path temporary = target.m_path;
+    temporary += ".part" + std::to_string(processNumber());
+    code = writeTo(temporary, bytes);
+    if (!code && target.isThere()) fs::permissions(temporary, target.m_status.permissions(), code);
+    if (!code) fs::rename(temporary, target.m_path, code);
+    if (!code) return true;
+    std::error_code ignored;
+    fs::remove(temporary, ignored);
     return fail(path, code, error);
 }
 }  // namespace drape

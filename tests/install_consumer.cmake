@@ -18,6 +18,17 @@ set(prefix ${WORK}/prefix)
 file(REMOVE_RECURSE ${WORK})
 must(${CMAKE_COMMAND} --install ${BUILD} --prefix ${prefix})
 
+foreach(file LICENSE README.md CHANGELOG.md docs/using.md)
+  if(NOT EXISTS ${prefix}/share/doc/Drape/${file})
+    message(FATAL_ERROR "${file} is not installed with the documents")
+  endif()
+endforeach()
+foreach(tool cloth_drop drape_check)
+  if(EXISTS ${BUILD}/bin/${tool})
+    must(${prefix}/bin/${tool} --version)
+  endif()
+endforeach()
+
 must(${CMAKE_COMMAND} -S ${SOURCE} -B ${WORK}/build -D CMAKE_PREFIX_PATH=${prefix} -D CMAKE_CXX_COMPILER=${COMPILER}
   -D CMAKE_BUILD_TYPE=Release -D CMAKE_CXX_FLAGS=${flags})
 must(${CMAKE_COMMAND} --build ${WORK}/build)

@@ -2,8 +2,8 @@
 # Builds and runs the slow tier: run_slow.sh [options]
 #
 # Runs the slow tests, the tests of the study and thousands of random worlds. Measures cloth that must lie still, in
-# eight falls on each of four obstacles. Runs the fast and full tiers with the sanitizers, and each fuzzer for five
-# minutes.
+# eight falls on each of four obstacles. Runs the core's unit tests as programs of Windows under Wine, the fast and full
+# tiers with the sanitizers, and each fuzzer for five minutes.
 #
 #   --jobs N              processes at a time (as many as there are cores)
 #   --plain-failing N     the most worlds that may fail of 4,000 without modifiers (0)
@@ -66,6 +66,7 @@ worlds --kind skirts --most-failing "$skirts"
 worlds --backend substeps --kind skirts --most-failing "$skirts"
 # Measured: 0.089 mm/s at most.
 build/release/bin/rest_speeds --models "${DRAPE_MODELS_DIR:-none}" --damping 0.05 --most 0.1 || failed=1
+bash tests/run_mingw.sh || failed=1
 bash tests/run_sanitized.sh --full || failed=1
 bash tests/run_fuzzers.sh 300 || failed=1
 exit $failed

@@ -3,7 +3,7 @@
 #include <ctime>
 #include <thread>
 
-#include "bullet_plugin/core/device/processor_name.h"
+#include "bullet_plugin/core/platform/platform.h"
 
 namespace drape::bench
 {

@@ -1,5 +1,7 @@
 #include "float_environment.h"
 
+#include "bullet_plugin/core/platform/float_state.h"
+
 // Out of line, so that the compiler moves no computation across the change.
 namespace drape
 {
@@ -12,8 +14,8 @@ thread_local DefaultFloats* t_outer = nullptr;
 DefaultFloats::DefaultFloats() noexcept : m_isOuter(!t_outer)
 {
     if (!m_isOuter) return;
-    std::fegetenv(&m_callers);
-    std::fesetenv(FE_DFL_ENV);
+    saveFloatState(m_callers);
+    setDefaultFloatState();
     t_outer = this;
 }
 
@@ -21,21 +23,21 @@ DefaultFloats::~DefaultFloats()
 {
     if (!m_isOuter) return;
     t_outer = nullptr;
-    std::fesetenv(&m_callers);
+    restoreFloatState(m_callers);
 }
 
 CallersFloats::CallersFloats() noexcept : m_within(t_outer)
 {
     if (!m_within) return;
     t_outer = nullptr;
-    std::fesetenv(&m_within->m_callers);
+    restoreFloatState(m_within->m_callers);
 }
 
 CallersFloats::~CallersFloats()
 {
     if (!m_within) return;
-    std::fegetenv(&m_within->m_callers);
-    std::fesetenv(FE_DFL_ENV);
+    saveFloatState(m_within->m_callers);
+    setDefaultFloatState();
     t_outer = m_within;
 }
 }  // namespace drape

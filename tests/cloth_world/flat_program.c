@@ -1,6 +1,8 @@
 // A C99 program that uses all of drape/c_api.h. c_api_test.cpp runs it and checks its results.
 #include "tests/cloth_world/flat_program.h"
 
+#include "drape/version.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -165,7 +167,8 @@ const char* runFlatProgram(void)
     const DrapeDeviceInfo* devices = NULL;
     size_t count = 0;
     CHECK(drapeListDevices(&devices, &count) == DRAPE_OK);
-    CHECK(drapeVersion()[0] != '\0');
+    CHECK(strcmp(drapeVersion(), DRAPE_VERSION_STRING) == 0);
+    CHECK(drapeVersionNumber() == DRAPE_VERSION_NUMBER);
 
     DrapeQueries* queries = NULL;
     CHECK(drapeQueriesCreate(&settings, &queries) == DRAPE_OK);

@@ -7,8 +7,22 @@
 #include <filesystem>
 #include <string>
 
+#ifdef _WIN32
+#include <process.h>
+#endif
+
 namespace drape::test
 {
+// Sets an environment variable, or removes it (null).
+inline void setVariable(const char* name, const char* value)
+{
+#ifdef _WIN32
+    _putenv_s(name, value ? value : "");
+#else
+    value ? setenv(name, value, 1) : unsetenv(name);
+#endif
+}
+
 // Sets a variable, or takes it away (null), and puts it back.
 class ScopedVariable
 {
@@ -18,9 +32,9 @@ public:
         const char* previous = std::getenv(name);
         m_had = previous != nullptr;
         if (previous) m_previous = previous;
-        value ? setenv(name, value, 1) : unsetenv(name);
+        setVariable(name, value);
     }
-    ~ScopedVariable() { m_had ? setenv(m_name, m_previous.c_str(), 1) : unsetenv(m_name); }
+    ~ScopedVariable() { setVariable(m_name, m_had ? m_previous.c_str() : nullptr); }
     ScopedVariable(const ScopedVariable&) = delete;
     ScopedVariable& operator=(const ScopedVariable&) = delete;
 
@@ -43,7 +57,7 @@ class TemporaryFolder
 public:
     TemporaryFolder() : m_path((std::filesystem::temp_directory_path() / "drape_test_XXXXXX").string())
     {
-        if (!mkdtemp(m_path.data())) ADD_FAILURE() << "no folder " << m_path;
+        if (!make()) ADD_FAILURE() << "no folder " << m_path;
     }
     ~TemporaryFolder()
     {
@@ -56,6 +70,18 @@ public:
     const std::string& path() const { return m_path; }
 
 private:
+    bool make()
+    {
+#ifdef _WIN32
+        static int count = 0;
+        m_path += std::to_string(_getpid()) + "_" + std::to_string(count++);
+        std::error_code ignored;
+        return std::filesystem::create_directory(m_path, ignored);
+#else
+        return mkdtemp(m_path.data()) != nullptr;
+#endif
+    }
+
     std::string m_path;
 };
 }  // namespace drape::test

@@ -270,16 +270,16 @@ TEST_F(CrossoverCacheTest, OtherDevicesUnitsAndSettingsHaveTheirOwn)
 
 TEST_F(CrossoverCacheTest, ProcessorsWhoseThreadsKeepToTheirCoresHaveTheirOwn)
 {
-    ::setenv("POCL_AFFINITY", "1", 1);
+    setVariable("POCL_AFFINITY", "1");
     cache().store(m_stored);
     EXPECT_TRUE(loads(cache()));
-    ::unsetenv("POCL_AFFINITY");
+    setVariable("POCL_AFFINITY", nullptr);
     EXPECT_FALSE(loads(cache()));
     m_device.m_isGpu = true;
     cache().store(m_stored);
-    ::setenv("POCL_AFFINITY", "1", 1);
+    setVariable("POCL_AFFINITY", "1");
     EXPECT_TRUE(loads(cache()));
-    ::unsetenv("POCL_AFFINITY");
+    setVariable("POCL_AFFINITY", nullptr);
 }
 
 TEST_F(CrossoverCacheTest, EveryTruncationAndEveryFlippedByteReadsAsNotThere)

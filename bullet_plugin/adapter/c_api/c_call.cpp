@@ -51,7 +51,12 @@ const char* drapeErrorText(void)
 
 const char* drapeVersion(void)
 {
-    return DRAPE_VERSION_STRING;
+    return libraryVersion();
+}
+
+int drapeVersionNumber(void)
+{
+    return libraryVersionNumber();
 }
 
 const char* drapeStatusText(uint32_t status)

@@ -9,7 +9,7 @@
 
 #include "bullet_plugin/core/device/cache_file.h"
 #include "bullet_plugin/core/device/embedded_kernels.h"
-#include "bullet_plugin/core/device/processor_name.h"
+#include "bullet_plugin/core/platform/platform.h"
 #include "bullet_plugin/core/threads/thread_team.h"
 #include "drape/version.h"
 

@@ -1,12 +1,11 @@
 #include "machine_load.h"
 
-#include <sys/resource.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <fstream>
 #include <sstream>
 #include <string>
+
+#include "bullet_plugin/core/platform/platform.h"
 
 namespace drape
 {
@@ -15,19 +14,11 @@ namespace
 // Share of a core that other processes may take: the load of an idle system.
 constexpr double kMostIdleLoad = 0.25;
 
-double ownSeconds()
-{
-    rusage usage = {};
-    getrusage(RUSAGE_SELF, &usage);
-    const auto seconds = [](const timeval& time) { return double(time.tv_sec) + 1e-6 * double(time.tv_usec); };
-    return seconds(usage.ru_utime) + seconds(usage.ru_stime);
-}
-
 CoreTimes timesNow()
 {
     CoreTimes times;
     std::ifstream stat("/proc/stat");
-    readCoreTimes(stat, double(sysconf(_SC_CLK_TCK)), times);
+    readCoreTimes(stat, ticksPerSecond(), times);
     return times;
 }
 }  // namespace
@@ -69,10 +60,10 @@ bool isBusyBetween(const CoreTimes& first, const CoreTimes& last, double ownSeco
     return others > spare + kMostIdleLoad;
 }
 
-MachineLoad::MachineLoad() : m_first(timesNow()), m_ownSeconds(ownSeconds()) {}
+MachineLoad::MachineLoad() : m_first(timesNow()), m_ownSeconds(processSeconds()) {}
 
 bool MachineLoad::isBusy(unsigned threads) const
 {
-    return isBusyBetween(m_first, timesNow(), ownSeconds() - m_ownSeconds, threads);
+    return isBusyBetween(m_first, timesNow(), processSeconds() - m_ownSeconds, threads);
 }
 }  // namespace drape

@@ -2,6 +2,8 @@
 
 #include <array>
 
+#include "bullet_plugin/core/platform/compiler.h"
+
 namespace drape
 {
 extern const CpuKernels kernelsOfAnyCpu;
@@ -19,11 +21,8 @@ struct Sets
     Sets()
     {
 #ifdef DRAPE_X86_KERNELS
-        __builtin_cpu_init();
-        const bool avx512 = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
-                            __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl");
-        if (avx512) m_sets[m_count++] = &kernelsOfAvx512;
-        if (__builtin_cpu_supports("avx2")) m_sets[m_count++] = &kernelsOfAvx2;
+        if (hasAvx512()) m_sets[m_count++] = &kernelsOfAvx512;
+        if (hasAvx2()) m_sets[m_count++] = &kernelsOfAvx2;
 #endif
         m_sets[m_count++] = &kernelsOfAnyCpu;
     }

@@ -3,7 +3,7 @@
 #include <mutex>
 #include <set>
 
-#include "bullet_plugin/core/threads/blocked_signals.h"
+#include "bullet_plugin/core/platform/platform.h"
 
 namespace drape
 {

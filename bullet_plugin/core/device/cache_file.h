@@ -1,6 +1,7 @@
 // Reads and writes files of Drape's cache folder. Every problem (no folder, no space, no permission, no memory) counts
 // as a missing file; nothing here fails. Files and folders that are not the user's own, or that others can write, are
 // not used, and links to files are not followed: the cache contains programs that are run.
+// core/platform has the two functions for each system.
 #pragma once
 
 #include <cstddef>

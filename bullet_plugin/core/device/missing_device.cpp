@@ -1,11 +1,9 @@
 #include "missing_device.h"
 
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <filesystem>
 #include <system_error>
 
+#include "bullet_plugin/core/platform/platform.h"
 #include "driver_files.h"
 #include "environment.h"
 #include "opencl.h"
@@ -25,17 +23,12 @@ bool canBeWritten(const std::string& folder)
     std::error_code ignored;
     while (!std::filesystem::exists(path, ignored) && path.has_parent_path() && path != path.parent_path())
         path = path.parent_path();
-    return std::filesystem::is_directory(path, ignored) && access(path.c_str(), W_OK | X_OK) == 0;
+    return std::filesystem::is_directory(path, ignored) && mayMakeFiles(path.string());
 }
 
 int descriptorsLeft()
 {
-    int opened[kEnoughDescriptors], count = 0;
-    while (count < kEnoughDescriptors && (opened[count] = open("/dev/null", O_RDONLY | O_CLOEXEC)) >= 0)
-        ++count;
-    for (int i = 0; i < count; ++i)
-        close(opened[i]);
-    return count;
+    return openableFiles(kEnoughDescriptors);
 }
 
 std::string whyNoDeviceFound(const std::string& seen, bool poclWithoutDevice)
@@ -45,7 +38,7 @@ std::string whyNoDeviceFound(const std::string& seen, bool poclWithoutDevice)
     if (descriptors < kEnoughDescriptors)
         return "this process can open " + std::to_string(descriptors) +
                " files more, and drivers are found by opening files";
-    if (!hasOpenClLoader()) return "this machine has no OpenCL loader, libOpenCL.so.1 (Debian: ocl-icd-libopencl1)";
+    if (!hasOpenClLoader()) return std::string("this machine has no OpenCL loader, ") + kOpenClLoader + kOpenClPackage;
     if (seen.empty())
     {
         const std::string vendors = variable("OCL_ICD_VENDORS");

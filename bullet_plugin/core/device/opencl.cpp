@@ -2,12 +2,11 @@
 
 #if DRAPE_OPENCL
 
-#include <dlfcn.h>
-
 #include <atomic>
 #include <cstdlib>
 
 #include "background_work.h"
+#include "bullet_plugin/core/platform/platform.h"
 
 namespace drape
 {
@@ -27,9 +26,9 @@ void endOpenCl()
 
 void* openClFunction(const char* name) noexcept
 {
-    if (void* const function = dlsym(RTLD_DEFAULT, name)) return function;
-    if (!g_loader) g_loader = dlopen("libOpenCL.so.1", RTLD_NOW | RTLD_LOCAL);
-    return g_loader ? dlsym(g_loader, name) : nullptr;
+    if (void* const function = loadedFunction(name)) return function;
+    if (!g_loader) g_loader = loadLibrary(kOpenClLoader);
+    return g_loader ? libraryFunction(g_loader, name) : nullptr;
 }
 
 void endOpenClAtExit() noexcept

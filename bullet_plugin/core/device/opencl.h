@@ -20,7 +20,7 @@ constexpr bool kHasOpenCl = true;
 constexpr cl_int kNoOpenClLoader = -1001;
 
 // Returns the address of a function of the process's OpenCL loader: the one that the app has linked or preloaded, else
-// libOpenCL.so.1. Null if there is none.
+// kOpenClLoader (core/platform). Null if there is none.
 void* openClFunction(const char* name) noexcept;
 inline bool hasOpenClLoader() noexcept
 {

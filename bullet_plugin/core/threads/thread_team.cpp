@@ -8,10 +8,9 @@
 #include <limits>
 #include <utility>
 
-#include <pthread.h>
-#include <sched.h>
-
-#include "blocked_signals.h"
+#include "bullet_plugin/core/platform/compiler.h"
+#include "bullet_plugin/core/platform/float_state.h"
+#include "bullet_plugin/core/platform/platform.h"
 
 namespace drape
 {
@@ -19,26 +18,11 @@ namespace
 {
 // Number of polls between two that yield the core to a waiting thread.
 constexpr int kLooksTogether = 64;
-
-// Hints to the core that this is a waiting loop.
-inline void pause()
-{
-#if defined(__x86_64__) || defined(__i386__)
-    __builtin_ia32_pause();
-#elif defined(__aarch64__)
-    __asm__ __volatile__("yield");
-#endif
-}
-
 }  // namespace
 
 unsigned ThreadTeam::sizeFor(unsigned threads)
 {
-    if (threads > 0) return threads;
-    cpu_set_t cores;
-    return ::sched_getaffinity(0, sizeof cores, &cores) == 0
-               ? std::min(static_cast<unsigned>(CPU_COUNT(&cores)), kMostByDefault)
-               : 1;
+    return threads > 0 ? threads : std::min(availableCores(), kMostByDefault);
 }
 
 ThreadTeam::ThreadTeam(unsigned threads) : m_size(sizeFor(threads)), m_stretches(new Stretch[m_size]) {}
@@ -74,14 +58,10 @@ void ThreadTeam::start()
 // Moves the threads to other cores, as far as the process may use them; otherwise they run anywhere.
 void ThreadTeam::keepOffCallersCore()
 {
-    const int core = ::sched_getcpu();
+    const int core = currentCore();
     if (core < 0 || core == m_callersCore) return;
     m_callersCore = core;
-    cpu_set_t cores;
-    if (::sched_getaffinity(0, sizeof cores, &cores) != 0 || CPU_COUNT(&cores) < 2) return;
-    CPU_CLR(static_cast<std::size_t>(core), &cores);
-    for (std::thread& thread : m_threads)
-        ::pthread_setaffinity_np(thread.native_handle(), sizeof cores, &cores);
+    keepOffCore(m_threads.data(), m_threads.size(), core);
 }
 
 void ThreadTeam::share(std::size_t count, Call call, const void* context)
@@ -90,7 +70,7 @@ void ThreadTeam::share(std::size_t count, Call call, const void* context)
     keepOffCallersCore();
     m_call = call;
     m_context = context;
-    std::fegetenv(&m_environment);
+    saveFloatState(m_environment);
     m_unfinished.store(count, std::memory_order_relaxed);
     assert(count <= std::numeric_limits<std::uint32_t>::max());
     const std::uint32_t job = m_job.load(std::memory_order_relaxed) + 1;
@@ -109,7 +89,7 @@ void ThreadTeam::share(std::size_t count, Call call, const void* context)
         if (looks % kLooksTogether == 0)
             std::this_thread::yield();
         else
-            pause();
+            pauseCore();
     }
     if (!m_failed.load(std::memory_order_relaxed)) return;
     m_failed = false;
@@ -144,7 +124,7 @@ bool ThreadTeam::workOnce(Stretch& stretch, bool helps)
     {
         if (static_cast<std::uint32_t>(claim) == 0) return false;
     } while (!stretch.m_claim.compare_exchange_weak(claim, claim - 1, std::memory_order_acquire));
-    if (helps) std::fesetenv(&m_environment);
+    if (helps) restoreFloatState(m_environment);
     runItem(stretch.m_end - static_cast<std::uint32_t>(claim));
     m_unfinished.fetch_sub(1, std::memory_order_release);
     return true;
@@ -183,7 +163,7 @@ bool ThreadTeam::awaitJob(std::uint32_t done)
         for (int looks = 0; looks < kLooksTogether; ++looks)
         {
             if (m_job.load(std::memory_order_acquire) != done) return true;
-            pause();
+            pauseCore();
         }
         if (m_ends) return false;
         std::this_thread::yield();

@@ -12,6 +12,7 @@
 #include <stdint.h>
 
 #include "drape/cloth_records.h"
+#include "drape/export.h"
 #include "drape/query_records.h"
 
 #ifdef __cplusplus
@@ -21,9 +22,9 @@ namespace drape
 
 // Precedes every function.
 #ifdef __cplusplus
-#define DRAPE_C_FUNCTION extern "C"
+#define DRAPE_C_FUNCTION extern "C" DRAPE_EXPORT
 #else
-#define DRAPE_C_FUNCTION
+#define DRAPE_C_FUNCTION DRAPE_EXPORT
 #endif
 
 // Says how a call ended.
@@ -250,8 +251,10 @@ typedef struct DrapeWorld DrapeWorld;
 
 // Returns the cause of the thread's last call that failed; "" if none has. Valid until the thread's next call.
 DRAPE_C_FUNCTION const char* drapeErrorText(void);
-// Returns the version, "major.minor.patch". Valid for ever.
+// Returns the version of the library, "major.minor.patch". Valid for ever.
 DRAPE_C_FUNCTION const char* drapeVersion(void);
+// Returns the same as a number that compares with DRAPE_VERSION_NUMBER (drape/version.h).
+DRAPE_C_FUNCTION int drapeVersionNumber(void);
 // Returns DRAPE_STEP_… bits in words, "" for a good step. Valid until the thread's next call of this function.
 DRAPE_C_FUNCTION const char* drapeStatusText(uint32_t status);
 

@@ -16,6 +16,7 @@
 
 #include "drape/cloth_records.h"
 #include "drape/error.h"
+#include "drape/export.h"
 #include "drape/node_arrays.h"
 #include "drape/plugin.h"
 
@@ -26,12 +27,12 @@ namespace drape
 {
 // Returns a cloth without a mesh: 1 kg, 20 mm thick, stiffness 1, bending stiffness 0.02, friction 0.5, damping 0.05,
 // five substeps, no self collision.
-ClothDescription defaultCloth();
+DRAPE_EXPORT ClothDescription defaultCloth();
 // Returns an obstacle without a mesh: margin 10 mm, friction 1, two-sided, in the world's frame.
-ObstacleDescription defaultObstacle();
+DRAPE_EXPORT ObstacleDescription defaultObstacle();
 
 // Cloths and obstacles have indices from 0 on, in the order in which they were added. An index is never used again.
-class ClothWorld
+class DRAPE_EXPORT ClothWorld
 {
 public:
     // Chooses the device and compiles its kernels, as Plugin does. Gravity is 9.81 m/s² against y. Returns null and
@@ -102,7 +103,7 @@ public:
 
 private:
     ClothWorld();
-    struct Implementation;
+    struct DRAPE_HIDDEN Implementation;
     std::unique_ptr<Implementation> m_implementation;
 };
 }  // namespace drape

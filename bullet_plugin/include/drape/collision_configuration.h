@@ -9,6 +9,7 @@
 #include <memory>
 
 #include "BulletSoftBody/btSoftBodyRigidBodyCollisionConfiguration.h"
+#include "drape/export.h"
 #include "drape/precision.h"
 
 namespace drape
@@ -17,7 +18,7 @@ class Plugin;
 class PluginState;
 
 // Registers Drape's algorithm. It shares the plugin's state and must outlive the world, as Bullet demands.
-class CollisionConfiguration : public btSoftBodyRigidBodyCollisionConfiguration
+class DRAPE_EXPORT CollisionConfiguration : public btSoftBodyRigidBodyCollisionConfiguration
 {
 public:
     // Registers the algorithm of `plugin`; `info` is passed to Bullet.

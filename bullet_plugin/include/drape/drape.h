@@ -9,6 +9,7 @@
 #pragma once
 
 #include "drape/collision_configuration.h"
+#include "drape/export.h"
 #include "drape/plugin.h"
 #include "drape/report.h"
 #include "drape/settings.h"
@@ -26,14 +27,14 @@ namespace drape
 // SoftBodySolver of this plugin; otherwise its cloths stay with Bullet, and Plugin::whyStock() says so. The plugin must
 // outlive the dispatcher or leave it through uninstall(). Call between steps. Returns false and changes nothing if the
 // dispatcher has another plugin's algorithm or memory runs out.
-bool install(Plugin& plugin, btCollisionDispatcher& dispatcher, btBroadphaseInterface& broadphase);
+DRAPE_EXPORT bool install(Plugin& plugin, btCollisionDispatcher& dispatcher, btBroadphaseInterface& broadphase);
 // Adds the plugin to the dispatcher, with the broad phase of `world`; see the other overload.
-bool install(Plugin& plugin, btCollisionDispatcher& dispatcher, btCollisionWorld& world);
+DRAPE_EXPORT bool install(Plugin& plugin, btCollisionDispatcher& dispatcher, btCollisionWorld& world);
 
 // Gives soft body pairs back to Bullet's own algorithm and frees the plugin's algorithms, after install() or with a
 // CollisionConfiguration. Call between steps. Returns false and changes nothing if the dispatcher does not have this
 // plugin's algorithm or memory runs out.
-bool uninstall(Plugin& plugin, btCollisionDispatcher& dispatcher, btBroadphaseInterface& broadphase);
+DRAPE_EXPORT bool uninstall(Plugin& plugin, btCollisionDispatcher& dispatcher, btBroadphaseInterface& broadphase);
 // Removes the plugin from the dispatcher, with the broad phase of `world`; see the other overload.
-bool uninstall(Plugin& plugin, btCollisionDispatcher& dispatcher, btCollisionWorld& world);
+DRAPE_EXPORT bool uninstall(Plugin& plugin, btCollisionDispatcher& dispatcher, btCollisionWorld& world);
 }  // namespace drape

@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "drape/export.h"
 #include "drape/node_arrays.h"
 #include "drape/precision.h"
 #include "drape/report.h"
@@ -68,7 +69,7 @@ using TriangleFilter = std::function<bool(int part, int triangle)>;
 // step; beyond its own size or a right angle it is a teleport.
 //
 // If memory runs out, a call does what its comment says, and later calls and steps go on.
-class Plugin
+class DRAPE_EXPORT Plugin
 {
 public:
     // Returns within milliseconds if the settings name no device; the host then computes until a GPU is ready, see

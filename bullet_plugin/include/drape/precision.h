@@ -5,6 +5,8 @@
 // linker misses a symbol whose name says which precision the app asks for. Cost: one pointer per translation unit.
 #pragma once
 
+#include "drape/export.h"
+
 #ifdef BT_USE_DOUBLE_PRECISION
 #if defined(DRAPE_BULLET_DOUBLE) && !DRAPE_BULLET_DOUBLE
 #error "This Drape library is built for Bullet in single precision, and BT_USE_DOUBLE_PRECISION is defined."
@@ -19,12 +21,21 @@
 
 namespace drape
 {
-extern const char DRAPE_BUILT_FOR;
+extern DRAPE_EXPORT const char DRAPE_BUILT_FOR;
 
+#ifdef _MSC_VER
+// Other linkers keep a symbol that nobody reads; Microsoft's compares two texts instead.
+#ifdef BT_USE_DOUBLE_PRECISION
+#pragma detect_mismatch("drape's precision of Bullet", "double")
+#else
+#pragma detect_mismatch("drape's precision of Bullet", "single")
+#endif
+#else
 namespace
 {
 __attribute__((used)) const char* const kBuiltFor = &DRAPE_BUILT_FOR;
 }
+#endif
 }  // namespace drape
 
 #undef DRAPE_BUILT_FOR

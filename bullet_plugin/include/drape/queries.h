@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "drape/error.h"
+#include "drape/export.h"
 #include "drape/mesh_description.h"
 #include "drape/query_records.h"
 #include "drape/report.h"
@@ -22,7 +23,7 @@ namespace drape
 {
 // Returns working defaults of continuous collision. On the published data they miss no true pair and report 157 of the
 // 6,598 pairs that do not touch.
-CcdSettings defaultCcdSettings();
+DRAPE_EXPORT CcdSettings defaultCcdSettings();
 
 // Selects the test of two triangles.
 enum class TriangleTest
@@ -79,7 +80,7 @@ struct MeshMotion
 // Runs queries on one back end. Every function below returns false if the device failed, the input is invalid (an index
 // out of range, a missing array, an unknown kind, a length that is not a number) or memory ran out. error() then has
 // the cause, and the results are undefined. Later calls may succeed. No exception leaves this class.
-class Queries
+class DRAPE_EXPORT Queries
 {
 public:
     // Chooses the device, compiles its kernels and keeps the settings' limits. Returns null and fills `error` if the
@@ -116,7 +117,7 @@ public:
 
 private:
     explicit Queries(const Settings& settings);
-    struct Implementation;
+    struct DRAPE_HIDDEN Implementation;
     std::unique_ptr<Implementation> m_implementation;
 };
 }  // namespace drape

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "drape/export.h"
+
 namespace drape
 {
 // Names an OpenCL device.
@@ -52,12 +54,12 @@ struct DeviceReport
 struct Settings;
 
 // Returns every OpenCL device in Drape's order of preference. Empty if there is none or memory runs out.
-std::vector<DeviceInfo> listDevices();
+DRAPE_EXPORT std::vector<DeviceInfo> listDevices();
 
 // Returns an empty string if the device is available that `settings` and DRAPE_DEVICE request. Otherwise one line names
 // the reason and the devices there are. If cost decides, it also checks DRAPE_CROSSOVER. "out of memory" if memory runs
 // out.
-std::string whyNoDevice(const Settings& settings);
+DRAPE_EXPORT std::string whyNoDevice(const Settings& settings);
 
 // Bits of StepStatistics::m_status. Zero is a good step.
 enum StepStatusBits : std::uint32_t
@@ -91,7 +93,7 @@ enum StepStatusBits : std::uint32_t
 
 // Returns `status` in words: one clause per bit, joined by "; ". Empty for a good step; "out of memory" if memory runs
 // out.
-std::string statusText(std::uint32_t status);
+DRAPE_EXPORT std::string statusText(std::uint32_t status);
 
 // One kernel launch as the device timed it; needs Settings::m_profileKernels.
 struct KernelTime

@@ -9,10 +9,12 @@
 #include <functional>
 #include <string>
 
+#include "drape/export.h"
+
 namespace drape
 {
 // Writes "drape: ", `line` and a line feed to standard error.
-void logToStandardError(const char* line);
+DRAPE_EXPORT void logToStandardError(const char* line);
 
 // Selects where Drape computes.
 enum class Backend

@@ -14,6 +14,7 @@
 #include <memory>
 
 #include "BulletSoftBody/btDefaultSoftBodySolver.h"
+#include "drape/export.h"
 #include "drape/precision.h"
 
 namespace drape
@@ -23,7 +24,7 @@ class PluginState;
 
 // Solves the soft bodies of one world. Bullet's m_rcontacts and m_scontacts hold the contacts of Bullet's own pairs
 // only; Plugin::contacts() returns Drape's.
-class SoftBodySolver : public btDefaultSoftBodySolver
+class DRAPE_EXPORT SoftBodySolver : public btDefaultSoftBodySolver
 {
 public:
     // Makes a solver that shares the plugin's state. If memory runs out it acts like Bullet's default solver, and
@@ -44,7 +45,7 @@ public:
     void updateSoftBodies() override;
 
 private:
-    struct Work;
+    struct DRAPE_HIDDEN Work;
 
     std::shared_ptr<PluginState> m_state;
     std::unique_ptr<Work> m_work;

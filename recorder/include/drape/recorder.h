@@ -11,6 +11,7 @@
 
 #include <memory>
 
+#include "drape/export.h"
 #include "drape/precision.h"
 #include "drape/recording.h"
 
@@ -35,7 +36,7 @@ struct RecorderSettings
 //   margins subtracted. Negative values below that distance. A node inside a closed mesh counts with a negative
 //   distance. No value farther away than four times the body's margin (at most 100 mm);
 // - stretch, %: the largest extension of the node's links, against their rest lengths. No value without links.
-class Recorder
+class DRAPE_RECORDER_EXPORT Recorder
 {
 public:
     // The world must outlive the recorder or its last record().
@@ -72,7 +73,7 @@ public:
     const Recording& recording() const;
 
 private:
-    struct State;
+    struct DRAPE_HIDDEN State;
     std::unique_ptr<State> m_state;
 };
 }  // namespace drape

@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "drape/export.h"
+
 namespace drape
 {
 // One number per node and frame, which a replay page shows as colour.
@@ -90,17 +92,18 @@ struct ReplaySettings
 // ReplaySettings::m_resolution; those that are not finite repeat the frame before. Returns false with one line in
 // `error`, and writes nothing, if three.js is missing, a recording's arrays do not fit together, or the file cannot be
 // written.
-bool writeReplay(const std::string& path, const std::vector<const Recording*>& runs, const ReplaySettings& settings,
-                 std::string& error);
+DRAPE_RECORDER_EXPORT bool writeReplay(const std::string& path, const std::vector<const Recording*>& runs,
+                                       const ReplaySettings& settings, std::string& error);
 
 // Writes for each body an OBJ file, and for those that move point caches with the same vertices in the same order: PC2
 // for Blender's modifier Mesh Cache, MDD for Houdini. Makes the folder. Names are those of the bodies, after their
 // number. The numbers are exact. Returns false with one line in `error`, like writeReplay().
-bool writePointCaches(const std::string& folder, const Recording& run, std::string& error);
+DRAPE_RECORDER_EXPORT bool writePointCaches(const std::string& folder, const Recording& run, std::string& error);
 
 // Writes a binary glTF 2.0 file (.glb) with an animation: a morph target for each frame of a soft body, and poses of
 // rigid bodies. For short clips: a target takes 12 bytes a node. If a body has more than `mostTargets` frames, evenly
 // spaced ones are written, the last among them. Positions that are not finite repeat the frame before. Returns false
 // with one line in `error`, like writeReplay().
-bool writeGltf(const std::string& path, const Recording& run, std::size_t mostTargets, std::string& error);
+DRAPE_RECORDER_EXPORT bool writeGltf(const std::string& path, const Recording& run, std::size_t mostTargets,
+                                     std::string& error);
 }  // namespace drape

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <tuple>
 
+#include "bullet_plugin/core/platform/compiler.h"
 #include "bullet_plugin/core/scene/mesh_pool.h"
 #include "bullet_plugin/core/solver/host/substeps.h"
 #include "kernels/lib/ordering/feature_index.h"
@@ -18,7 +19,7 @@ constexpr std::size_t kMostSmallNodes = 512;
 // Returns the height of a group above the leaves.
 std::size_t heightOf(std::size_t group, std::size_t leafCount)
 {
-    return std::size_t(__builtin_clzll(group) - __builtin_clzll(leafCount));
+    return std::size_t(leadingZeros(std::uint64_t(group)) - leadingZeros(std::uint64_t(leafCount)));
 }
 }  // namespace
 

@@ -28,7 +28,7 @@ bool anyAbove0(const Lanes& values)
 template <class Lanes>
 unsigned bitsAbove0(const Lanes& values)
 {
-    using Bits = int __attribute__((vector_size(16)));
+    using Bits = DRAPE_VECTOR_OF(int, 4);
     const std::uint64_t both = bothHalves((values > 0) & Bits{1, 2, 4, 8});
     return unsigned(both | both >> 32);
 }

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "bullet_plugin/core/platform/compiler.h"
 #include "bullet_plugin/core/solver/cloth_contacts.h"
 
 namespace drape
@@ -72,7 +73,7 @@ public:
 
 private:
     static constexpr int kLanes = 4;  // contacts side by side
-    using Lanes = float __attribute__((vector_size(kLanes * sizeof(float))));
+    using Lanes = DRAPE_VECTOR_OF(float, kLanes);
 
     // Contacts of one cloth feature side by side; lanes beyond the last one are never violated. The gap is n.(d0 + w1
     // (d1 - d0) + w2 (d2 - d0)) - level. The level is raised by a margin for rounding.

@@ -5,6 +5,7 @@
 #include <numeric>
 #include <tuple>
 
+#include "bullet_plugin/core/platform/compiler.h"
 #include "bullet_plugin/core/solver/topology/colouring.h"
 #include "bullet_plugin/core/threads/ranges.h"
 #include "kernels/lib/solver/link_row.h"
@@ -19,19 +20,7 @@ constexpr std::size_t kLeastShared = 4096;
 // Blocks that a thread starts per turn: 10 µs.
 constexpr std::size_t kBlocksPerJob = 1024;
 
-using Lanes = float __attribute__((vector_size(16)));
-
-// Returns four numbers of two vectors: those of the first are counted from 0, of the second from 4.
-template <int i, int j, int k, int l>
-Lanes shuffled(const Lanes& first, const Lanes& second)
-{
-#ifdef __clang__
-    return __builtin_shufflevector(first, second, i, j, k, l);
-#else
-    using Index = int __attribute__((vector_size(16)));
-    return __builtin_shuffle(first, second, Index{i, j, k, l});
-#endif
-}
+using Lanes = DRAPE_VECTOR_OF(float, 4);
 
 void transpose(Lanes rows[4])
 {

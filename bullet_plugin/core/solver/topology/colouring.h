@@ -8,6 +8,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "bullet_plugin/core/platform/compiler.h"
+
 namespace drape
 {
 constexpr std::uint32_t kColours = 64, kLastColour = kColours - 1;
@@ -24,7 +26,7 @@ public:
         std::uint64_t taken = 0;
         for (std::size_t k = 0; k < count; ++k)
             taken |= m_taken[std::size_t(nodes[k])];
-        const std::uint32_t colour = ~taken == 0 ? kLastColour : std::uint32_t(__builtin_ctzll(~taken));
+        const std::uint32_t colour = ~taken == 0 ? kLastColour : std::uint32_t(trailingZeros(~taken));
         for (std::size_t k = 0; k < count; ++k)
             m_taken[std::size_t(nodes[k])] |= std::uint64_t(1) << colour;
         return colour;

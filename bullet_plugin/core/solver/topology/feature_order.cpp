@@ -1,5 +1,6 @@
 #include "feature_order.h"
 
+#include "bullet_plugin/core/platform/compiler.h"
 #include "kernels/lib/geometry/segment.h"
 #include "kernels/lib/ordering/feature_index.h"
 #include "revision.h"
@@ -29,7 +30,7 @@ void FeatureOrder::colour(std::uint32_t kind, std::size_t nodeCount)
     {
         OrderedFeature& feature = m_features[kind == kEdgeFeature ? i : m_features.size() - 1 - i];
         if (feature.m_kind != kind) continue;
-        const std::size_t height = std::size_t(31 - __builtin_clz(feature.m_group));
+        const std::size_t height = std::size_t(31 - leadingZeros(feature.m_group));
         while (byHeight.size() <= height)
         {
             byHeight.emplace_back();
