@@ -56,6 +56,7 @@ void ClothRows::add(const ClothContact& contact)
     }
     const float gap = contact.m_gap0 - contact.m_thickness;
     row.m_split = contact.m_split;
+    row.m_index = contact.m_index;
     row.m_gap0 = contact.m_gap0;
     row.m_thickness = contact.m_thickness;
     row.m_distance = contact.m_thickness + targetGap(gap, 0.0f, contact.m_thickness);
@@ -147,14 +148,17 @@ bool ClothRows::isNear(const Row& row)
     return row.m_row.m_inverseMobility > 0.0f && violation > -kNearBy * row.m_thickness;
 }
 
-void ClothRows::begin(float passed)
+void ClothRows::begin(float passed, float perPush)
 {
+    const float before = m_perPush;
     const auto beginGroup = [&](std::size_t group)
     {
         m_nearEnds[group] = m_firsts[group];
         for (std::size_t i = m_firsts[group]; i < m_firsts[group + 1]; ++i)
         {
             Row& row = m_rows[i];
+            if (row.m_row.m_multiplier > 0.0f)
+                row.m_impulse = vec3AddScaled(row.m_impulse, rowPush(&row.m_row), before);
             row.m_row.m_multiplier = 0.0f;
             row.m_row.m_held = vec3(0.0f, 0.0f, 0.0f);
             takePlane(row, passed);
@@ -162,6 +166,7 @@ void ClothRows::begin(float passed)
         }
     };
     m_climb.run(threads(), beginGroup);
+    m_perPush = perPush;
 }
 
 // Moves the row's nodes. by: kg m.
@@ -206,6 +211,7 @@ void ClothRows::limitSpeed(Row& row, float perSecond)
     const float excess = std::min(speed, std::max(0.0f, recovered) * perSecond);
     if (!(excess > 0.0f)) return;
     const Vec3 loss = vec3Scale(row.m_row.m_normal, -excess * row.m_row.m_inverseMobility);
+    row.m_impulse = vec3Add(row.m_impulse, loss);
     for (int k = 0; k < 4; ++k)
         if (row.m_inverseMasses[k] > 0.0f)
             row.m_states[k]->m_velocity =
