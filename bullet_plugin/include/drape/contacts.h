@@ -20,18 +20,18 @@ namespace drape
 // A feature of a mesh. For an obstacle, AtNode means a vertex.
 enum class ContactFeature : std::uint8_t
 {
-    AtNode,
-    AtEdge,
-    AtFace
+    AtNode,  // one node or vertex
+    AtEdge,  // two of them
+    AtFace   // three of them
 };
 
 // A point of a node, an edge or a face of a soft body.
 struct ClothPoint
 {
     const btSoftBody* m_body;  // null where there is no second soft body
-    ContactFeature m_feature;
-    int m_nodes[3];      // indices in m_body->m_nodes; -1 if unused
-    float m_weights[3];  // weights of these nodes, with the sum 1; a face's are barycentric
+    ContactFeature m_feature;  // the feature on which the point is
+    int m_nodes[3];            // indices in m_body->m_nodes; -1 if unused
+    float m_weights[3];        // weights of these nodes, with the sum 1; a face's are barycentric
 };
 
 // A contact of a soft body with an obstacle, with another soft body or with itself. Pointers are valid until the
@@ -42,9 +42,10 @@ struct StepContact
     ClothPoint m_other;                 // the point of the other soft body, or of the same one; else unused
     const btCollisionObject* m_object;  // the obstacle, or the other soft body
     const btCollisionShape* m_shape;    // the obstacle's shape: of a compound the child; null for a soft body
-    // The obstacle's triangle as Bullet names it to a btTriangleCallback: for a vertex or an edge, one that has it. -1
-    // for convex shapes and soft bodies.
-    int m_part, m_triangle;
+    // The mesh's part of the obstacle's triangle, as Bullet names it to a btTriangleCallback; -1 for convex shapes and
+    // soft bodies.
+    int m_part;
+    int m_triangle;  // the triangle in that part, for a vertex or an edge one that has it; else like m_part
     ContactFeature m_objectFeature;  // the feature of that triangle, or of m_other
     // True for a contact of a node that Bullet's own algorithm found, beside cloth whose links Drape solves. It has no
     // triangle and no shape.
@@ -82,14 +83,15 @@ enum class PairFlag : std::uint8_t
 // them over a step.
 struct FlaggedPair
 {
-    PairFlag m_flag;
+    PairFlag m_flag;                    // the reason
     const btSoftBody* m_body;           // the cloth
     int m_nodes[3];                     // its feature: indices in m_body->m_nodes; -1 if unused
     const btSoftBody* m_otherBody;      // the other cloth, or the same one; null for an obstacle
     int m_otherNodes[3];                // its feature; -1 if unused
     const btCollisionObject* m_object;  // the obstacle, or m_otherBody
     const btCollisionShape* m_shape;    // the obstacle's shape; null for cloth
-    int m_part, m_triangle;             // the obstacle's triangle, see StepContact
+    int m_part;                         // the part of the obstacle's triangle, see StepContact
+    int m_triangle;                     // the obstacle's triangle, see StepContact
     float m_corners[3][3];              // m, the obstacle's triangle where the step began; 0 for cloth
 };
 }  // namespace drape

@@ -120,7 +120,8 @@ public:
     // call comes from the thread that steps the world, within stepSimulation(), when soft bodies have their final
     // positions and velocities and before Bullet's normals follow. The listener may read the world and call this
     // class's const functions and setContactListener(); it must not change the world. Its exceptions are dropped. Null
-    // removes it. The step has the cost of recordContacts() while there is one. If memory runs out, nothing changes.
+    // removes it. The step has the cost of recordContacts() while there is one. Steps that fail, or run without Drape,
+    // make no call. If memory runs out, nothing changes.
     void setContactListener(ContactListener listener);
 
     // Returns one line with the device, the reason for it and the last step. "out of memory" if memory runs out.
