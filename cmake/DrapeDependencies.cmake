@@ -1,5 +1,5 @@
 # Finds what the chosen parts need and says what is missing by its Debian name. Sets DRAPE_WITH_BULLET,
-# DRAPE_WITH_BENCHMARKS, DRAPE_WITH_TESTS, DRAPE_WITH_PYTHON and DRAPE_WITH_STUDY (ON or OFF).
+# DRAPE_WITH_BENCHMARKS, DRAPE_WITH_TESTS, DRAPE_WITH_PYTHON, DRAPE_WITH_WINDOW and DRAPE_WITH_STUDY (ON or OFF).
 set(THREADS_PREFER_PTHREAD_FLAG ON)
 find_package(Threads REQUIRED)
 # Headers alone: the loader is opened at run time (core/device/opencl.h).
@@ -115,6 +115,24 @@ if(DRAPE_PYTHON AND (DRAPE_WITH_BULLET OR NOT DRAPE_PYTHON STREQUAL "AUTO"))
     message(STATUS "Without the Python module: ${reason}")
   else()
     message(FATAL_ERROR "DRAPE_PYTHON=ON: ${reason}")
+  endif()
+endif()
+
+# The example with a window.
+set(DRAPE_WITH_WINDOW OFF)
+if(DRAPE_WINDOW AND DRAPE_TOOLS AND (DRAPE_WITH_BULLET OR NOT DRAPE_WINDOW STREQUAL "AUTO"))
+  find_package(PkgConfig QUIET)
+  if(PKG_CONFIG_FOUND)
+    pkg_check_modules(glfw QUIET IMPORTED_TARGET glfw3)
+    pkg_check_modules(gl QUIET IMPORTED_TARGET gl)
+    pkg_check_modules(imgui QUIET IMPORTED_TARGET imgui)
+  endif()
+  if(DRAPE_WITH_BULLET AND glfw_FOUND AND gl_FOUND AND imgui_FOUND)
+    set(DRAPE_WITH_WINDOW ON)
+  elseif(DRAPE_WINDOW STREQUAL "AUTO")
+    message(STATUS "Without the window: it needs libglfw3-dev libimgui-dev libgl-dev")
+  else()
+    message(FATAL_ERROR "DRAPE_WINDOW=ON needs Bullet and libglfw3-dev libimgui-dev libgl-dev")
   endif()
 endif()
 

@@ -16,6 +16,8 @@ packages=(
   pocl-opencl-icd ocl-icd-libopencl1
   # tools: arguments, PNG, WebP, rays, replay pages; exact arithmetic for the independent check
   libcli11-dev libpng-dev libwebp-dev libembree-dev libjs-three libgmp-dev
+  # the example with a window
+  libglfw3-dev libimgui-dev libgl-dev
   # data: the bunny
   glmark2-data
 )
@@ -24,8 +26,8 @@ further=(
   libfcl-dev libtbb-dev python3-matplotlib
   # the Python module and its tests
   python3-dev pybind11-dev python3-numpy python3-pytest mypy
-  # tests; a simulated GPU; fuzzing; the format of C++ and OpenCL C
-  libgtest-dev oclgrind clang libclang-rt-dev clang-format
+  # tests; a simulated GPU; a display without a screen; fuzzing; the format of C++ and OpenCL C
+  libgtest-dev oclgrind xvfb libgl1-mesa-dri clang libclang-rt-dev clang-format
   # published data: unpacking
   xz-utils
 )

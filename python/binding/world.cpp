@@ -189,6 +189,16 @@ public:
         work([&] { return m_world->contacts(found); });
         return py::array_t<ClothContact>(py::ssize_t(found.size()), found.data());
     }
+    void recordContacts(bool record)
+    {
+        m_turn.run([&] { m_world->plugin().recordContacts(record); });
+    }
+    py::array stepContacts()
+    {
+        std::vector<ClothStepContact> found;
+        work([&] { return m_world->stepContacts(found); });
+        return py::array_t<ClothStepContact>(py::ssize_t(found.size()), found.data());
+    }
     py::array clothTriangles()
     {
         std::vector<ClothTriangles> found;
@@ -250,6 +260,10 @@ void bindWorld(py::module_& module)
 {
     PYBIND11_NUMPY_DTYPE_EX(ClothContact, m_cloth, "cloth", m_obstacle, "obstacle", m_nodes, "nodes", m_weights,
                             "weights", m_normal, "normal", m_point, "point", m_gap, "gap", m_thickness, "thickness");
+    PYBIND11_NUMPY_DTYPE_EX(ClothStepContact, m_cloth, "cloth", m_obstacle, "obstacle", m_triangle, "triangle", m_other,
+                            "other", m_nodes, "nodes", m_otherNodes, "other_nodes", m_weights, "weights",
+                            m_otherWeights, "other_weights", m_normal, "normal", m_point, "point", m_impulse, "impulse",
+                            m_gap, "gap", m_thickness, "thickness", m_timeOfImpact, "time_of_impact");
     PYBIND11_NUMPY_DTYPE_EX(ClothTriangles, m_cloths, "cloths", m_nodes, "nodes");
     module.def("default_cloth", clothDefaults);
     module.def("default_obstacle", obstacleDefaults);
@@ -268,6 +282,8 @@ void bindWorld(py::module_& module)
         .def("step", &PyWorld::step)
         .def("nodes", &PyWorld::nodes)
         .def("contacts", &PyWorld::contacts)
+        .def("record_contacts", &PyWorld::recordContacts)
+        .def("step_contacts", &PyWorld::stepContacts)
         .def("cloth_triangles", &PyWorld::clothTriangles)
         .def("statistics", &PyWorld::statistics)
         .def("device", &PyWorld::device)

@@ -152,6 +152,28 @@ class ClothWorld:
         """
         return self._own.contacts()
 
+    def record_contacts(self, record: bool = True) -> None:
+        """Makes the coming steps keep contacts with their impulses for step_contacts(), or not.
+
+        Results do not change. The host solves all cloth meanwhile.
+        """
+        self._own.record_contacts(bool(record))
+
+    def step_contacts(self) -> Array:
+        """Returns the contacts of the last step with what they did, as records; empty unless they were recorded.
+
+        cloth, obstacle, other: the cloth, and the obstacle or the other cloth beside it; the missing one is -1.
+        triangle: a triangle of the obstacle that has the contact's feature, -1 beside cloth.
+        nodes, weights, other_nodes, other_weights (3): the features of the cloth and of the other cloth.
+        normal (3): unit vector from the obstacle or the other cloth to the cloth.
+        point (3): point on the obstacle or the other cloth, m.
+        impulse (3): given to the cloth in the step, friction included, N s.
+        gap: distance where the step ended, thickness subtracted, m.
+        thickness: distance at which the two rest, m.
+        time_of_impact: share of the step, below 1 if the cloth's path met the surface.
+        """
+        return self._own.step_contacts()
+
     def cloth_triangles(self) -> Array:
         """Returns triangles of cloth with self collision that intersected where the last step began, as records.
 

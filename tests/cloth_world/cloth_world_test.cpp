@@ -181,6 +181,31 @@ TEST_F(ClothWorldTest, ClothRestsAtHalfItsThicknessAndTheMargin)
     EXPECT_LT(meanHeight(own), -0.5);
 }
 
+TEST_F(ClothWorldTest, RecordedImpulsesCarryTheCloth)
+{
+    ClothDescription cloth = describeCloth(m_sheet);
+    cloth.m_mass = 2;
+    const int own = add(cloth), below = add(describeObstacle(m_plate));
+    steps(90);
+    std::vector<ClothStepContact> contacts;
+    ASSERT_TRUE(m_world->stepContacts(contacts));
+    EXPECT_TRUE(contacts.empty());
+    m_world->plugin().recordContacts(true);
+    steps(1);
+    ASSERT_TRUE(m_world->stepContacts(contacts));
+    double held = 0;
+    for (const ClothStepContact& contact : contacts)
+    {
+        EXPECT_EQ(contact.m_cloth, own);
+        EXPECT_EQ(contact.m_obstacle, below);
+        EXPECT_EQ(contact.m_other, -1);
+        EXPECT_GE(contact.m_triangle, 0);
+        EXPECT_LT(std::size_t(contact.m_triangle), m_plate.triangleCount());
+        held += double(contact.m_impulse[1]);
+    }
+    EXPECT_NEAR(held, 2 * 9.81 / 60, 0.01);
+}
+
 TEST_F(ClothWorldTest, PinnedNodesStayOrGoWhereTheyAreMoved)
 {
     const std::int32_t pins[] = {0, 8};

@@ -93,6 +93,12 @@ static const char* stepWorld(DrapeWorld* world, int cloth, int obstacle)
     CHECK(drapeWorldStatistics(world, &statistics) == DRAPE_OK && statistics.m_contacts == count);
     CHECK(statistics.m_status == DRAPE_STEP_GOOD && statistics.m_callsMs > 0);
     CHECK(strcmp(drapeStatusText(statistics.m_status), "") == 0);
+    const ClothStepContact* records = NULL;
+    CHECK(drapeWorldStepContacts(world, &records, &count) == DRAPE_OK && count == 0);
+    CHECK(drapeWorldRecordContacts(world, 1) == DRAPE_OK && drapeWorldStep(world, 1.0 / 60) == DRAPE_OK);
+    CHECK(drapeWorldStepContacts(world, &records, &count) == DRAPE_OK && count > 0);
+    CHECK(records[0].m_cloth == cloth && records[0].m_obstacle == obstacle && records[0].m_other == -1);
+    CHECK(records[0].m_triangle >= 0 && drapeWorldRecordContacts(world, 0) == DRAPE_OK);
     const ClothTriangles* meeting = NULL;
     CHECK(drapeWorldClothTriangles(world, &meeting, &count) == DRAPE_OK && count == 0);
     CHECK(drapeWorldSetPose(world, obstacle, position, turned, 0) == DRAPE_OK);

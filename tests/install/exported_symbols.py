@@ -14,7 +14,7 @@ CLASSES = {
     "python": [],
 }
 FUNCTIONS = {
-    "library": ["defaultCcdSettings", "defaultCloth", "defaultObstacle", "install", "libraryVersion",
+    "library": ["debugDraw", "defaultCcdSettings", "defaultCloth", "defaultObstacle", "install", "libraryVersion",
                 "libraryVersionNumber", "listDevices", "logToStandardError", "statusText", "uninstall",
                 "whyNoDevice"],
     "recorder": ["writeGltf", "writePointCaches", "writeReplay"],

@@ -89,6 +89,20 @@ def test_cloth_rests_at_half_its_thickness_and_the_margin(world, sheet, plate):
     assert world.positions(cloth)[:, 1].max() < -0.3
 
 
+def test_recorded_impulses_carry_the_cloth(world, sheet, plate):
+    cloth = world.add_cloth(*sheet[:2], mass=2)
+    below = world.add_mesh(*plate[:2])
+    for _ in range(90):
+        world.step(DT)
+    assert len(world.step_contacts()) == 0
+    world.record_contacts()
+    world.step(DT)
+    contacts = world.step_contacts()
+    assert set(contacts["cloth"]) == {cloth} and set(contacts["obstacle"]) == {below}
+    assert set(contacts["other"]) == {-1} and contacts["triangle"].min() >= 0
+    assert numpy.allclose(contacts["impulse"].sum(axis=0), (0, 2 * 9.81 / 60, 0), atol=0.01)
+
+
 def test_pins_hold_follow_and_let_go(world, sheet):
     cloth = world.add_cloth(*sheet[:2], pins=numpy.array([0, 8], numpy.int32))
     positions = world.positions(cloth)

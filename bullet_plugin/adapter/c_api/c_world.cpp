@@ -9,6 +9,7 @@ struct DrapeWorld
 {
     std::unique_ptr<ClothWorld> m_world;
     std::vector<ClothContact> m_contacts;
+    std::vector<ClothStepContact> m_stepContacts;
     std::vector<ClothTriangles> m_triangles;
 };
 
@@ -158,6 +159,22 @@ DrapeResult drapeWorldContacts(DrapeWorld* world, const ClothContact** contacts,
     if (!world->m_world->contacts(world->m_contacts)) return failC(world->m_world->error());
     *contacts = world->m_contacts.data();
     *count = world->m_contacts.size();
+    return DRAPE_OK;
+}
+
+DrapeResult drapeWorldRecordContacts(DrapeWorld* world, int record)
+{
+    if (!world) return refuseC("drapeWorldRecordContacts", "an argument is null");
+    world->m_world->plugin().recordContacts(record != 0);
+    return DRAPE_OK;
+}
+
+DrapeResult drapeWorldStepContacts(DrapeWorld* world, const ClothStepContact** contacts, size_t* count)
+{
+    if (!world || !contacts || !count) return refuseC("drapeWorldStepContacts", "an argument is null");
+    if (!world->m_world->stepContacts(world->m_stepContacts)) return failC(world->m_world->error());
+    *contacts = world->m_stepContacts.data();
+    *count = world->m_stepContacts.size();
     return DRAPE_OK;
 }
 

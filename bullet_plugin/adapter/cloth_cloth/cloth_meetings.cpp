@@ -138,7 +138,7 @@ void ClothMeetings::forNodes(const Write& write)
             write(m_members[i], m_members[i].m_body->m_nodes[k], m_set.firstNode(i) + std::size_t(k));
 }
 
-void ClothMeetings::addRow(const Contact& found)
+void ClothMeetings::addRow(const Contact& found, std::size_t index)
 {
     const SelfContactView view = m_set.view(found);
     const int split = view.m_kind == DRAPE_SELF_EDGE_EDGE ? 2 : 1;
@@ -165,6 +165,7 @@ void ClothMeetings::addRow(const Contact& found)
     const btSoftBody &a = *m_members[first].m_body, &b = *m_members[second].m_body;
     contact.m_normal = vec3(view.m_normal[0], view.m_normal[1], view.m_normal[2]);
     contact.m_gap0 = view.m_gap0;
+    contact.m_index = std::uint32_t(index);
     contact.m_thickness = std::min(view.m_thickness, thicknessOf(first, second));
     contact.m_friction = float(std::max(a.m_cfg.kDF, b.m_cfg.kDF));  // Bullet's between soft bodies
     m_rows.add(contact);
@@ -265,8 +266,8 @@ ClothRows& ClothMeetings::find(const NodesOf& nodesOf)
     if (!m_set.findContacts(1 + m_state.settings().m_activation, m_state.settings().m_candidateLimit, m_state.threads(),
                             m_contacts))
         m_contacts.clear();
-    for (const Contact& contact : m_contacts)
-        addRow(contact);
+    for (std::size_t i = 0; i < m_contacts.size(); ++i)
+        addRow(m_contacts[i], i);
     std::vector<Vec3> starts(m_rows.empty() ? 0 : m_set.nodeCount());
     for (std::size_t node = 0; node < starts.size(); ++node)
         starts[node] = vec3Load(m_set.start(), std::uint32_t(node));
@@ -274,6 +275,54 @@ ClothRows& ClothMeetings::find(const NodesOf& nodesOf)
     m_state.m_statistics.m_selfContacts += m_contacts.size();
     m_state.m_statistics.m_clothPairsSkipped += m_set.smoothPairs();
     return m_rows;
+}
+
+// Returns the feature of `count` of the contact's nodes, from `first` on.
+ClothPoint ClothMeetings::pointOf(const SelfContactView& view, int first, int count) const
+{
+    const std::size_t member = m_set.memberOf(std::size_t(view.m_nodes[first]));
+    const ContactFeature feature = count == 1   ? ContactFeature::AtNode
+                                   : count == 2 ? ContactFeature::AtEdge
+                                                : ContactFeature::AtFace;
+    ClothPoint point = {m_members[member].m_body, feature, {-1, -1, -1}, {0, 0, 0}};
+    for (int k = 0; k < count; ++k)
+    {
+        point.m_nodes[k] = int(std::size_t(view.m_nodes[first + k]) - m_set.firstNode(member));
+        point.m_weights[k] = view.m_weights[first + k];
+    }
+    return point;
+}
+
+StepContact ClothMeetings::recordOf(const SelfContactView& view) const
+{
+    const int split = view.m_kind == DRAPE_SELF_EDGE_EDGE ? 2 : 1;
+    const std::size_t first = m_set.memberOf(std::size_t(view.m_nodes[0]));
+    const std::size_t second = m_set.memberOf(std::size_t(view.m_nodes[3]));
+    StepContact contact = {};
+    contact.m_cloth = pointOf(view, 0, split);
+    contact.m_other = pointOf(view, split, 4 - split);
+    contact.m_object = contact.m_other.m_body;
+    contact.m_part = contact.m_triangle = -1;
+    contact.m_objectFeature = contact.m_other.m_feature;
+    std::copy_n(view.m_point, 3, contact.m_point);
+    std::copy_n(view.m_normal, 3, contact.m_normal);
+    contact.m_thickness = std::min(view.m_thickness, thicknessOf(first, second));
+    contact.m_predictedGap = view.m_gap1 - contact.m_thickness;
+    contact.m_timeOfImpact = view.m_time;
+    return contact;
+}
+
+void ClothMeetings::record(ContactRecords& records) const
+{
+    std::vector<Vec3> impulses(m_contacts.size(), vec3(0, 0, 0));
+    m_rows.forImpulses([&](std::uint32_t index, Vec3 impulse) { impulses[index] = impulse; });
+    for (std::size_t i = 0; any() && i < m_contacts.size(); ++i)
+    {
+        const SelfContactView view = m_set.view(m_contacts[i]);
+        const std::uint32_t nodes[4] = {std::uint32_t(view.m_nodes[0]), std::uint32_t(view.m_nodes[1]),
+                                        std::uint32_t(view.m_nodes[2]), std::uint32_t(view.m_nodes[3])};
+        if (isGuarded(nodes)) records.add(recordOf(view), impulses[i]);
+    }
 }
 
 bool ClothMeetings::hasRows(const SolverNodes& nodes) const
@@ -320,6 +369,7 @@ const std::vector<btSoftBody*>& ClothMeetings::guard()
     statistics.m_nodesShortened += result.m_shortened;
     statistics.m_clothPairsMeeting = m_meeting.size() / 6 + result.m_startMeeting + result.m_forced;
     if (statistics.m_clothPairsMeeting > 0) statistics.m_status |= kStepClothsMeet;
+    listFlagged();
     if (result.m_tooMany) statistics.m_status |= kStepMotionHeldBack;
     const auto read = [&](Member& member, btSoftBody::Node& node, std::size_t index)
     {
@@ -333,6 +383,33 @@ const std::vector<btSoftBody*>& ClothMeetings::guard()
     };
     forNodes(read);
     return m_moved;
+}
+
+// Lists the pairs of the last guard() that are not guarded.
+void ClothMeetings::listFlagged()
+{
+    std::vector<FlaggedPair>& all = m_state.m_flagged;
+    all.erase(std::remove_if(all.begin(), all.end(), [](const FlaggedPair& pair) { return pair.m_otherBody; }),
+              all.end());
+    const auto add = [&](const std::uint32_t* nodes, int split, int count, PairFlag flag)
+    {
+        FlaggedPair pair = {};
+        pair.m_flag = flag;
+        const std::size_t first = m_set.memberOf(nodes[0]), second = m_set.memberOf(nodes[split]);
+        pair.m_body = m_members[first].m_body;
+        pair.m_object = pair.m_otherBody = m_members[second].m_body;
+        pair.m_part = pair.m_triangle = -1;
+        for (int k = 0; k < 3; ++k)
+        {
+            pair.m_nodes[k] = k < split ? int(nodes[k] - m_set.firstNode(first)) : -1;
+            pair.m_otherNodes[k] = k < count - split ? int(nodes[split + k] - m_set.firstNode(second)) : -1;
+        }
+        all.push_back(pair);
+    };
+    for (std::size_t i = 0; i < m_meeting.size(); i += 6)
+        add(m_meeting.data() + i, 3, 6, PairFlag::StartsIntersecting);
+    m_guard.forFlagged([&](const std::uint32_t* nodes, int split, bool isForced)
+                       { add(nodes, split, 4, isForced ? PairFlag::Forced : PairFlag::Touches); });
 }
 
 void ClothMeetings::holdStill()

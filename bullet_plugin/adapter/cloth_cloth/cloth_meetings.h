@@ -39,6 +39,8 @@ public:
     // way of Bullet's nodes from their starts (m_q) to where they are (m_x). Lists the bodies with nodes that were
     // moved. Adds to the statistics.
     const std::vector<btSoftBody*>& guard();
+    // Adds the contacts of find() with what the solver's rows gave.
+    void record(ContactRecords& records) const;
     // Puts all free nodes back to their starts, at rest.
     void holdStill();
 
@@ -59,7 +61,10 @@ private:
     float thicknessOf(std::size_t a, std::size_t b) const;
     template <class Write>
     void forNodes(const Write& write);
-    void addRow(const Contact& found);
+    void addRow(const Contact& found, std::size_t index);
+    ClothPoint pointOf(const SelfContactView& view, int first, int count) const;
+    StepContact recordOf(const SelfContactView& view) const;
+    void listFlagged();
     bool startsAtLastEnds() const;
     void startHeldNodes();
     void checkStarts();

@@ -141,6 +141,40 @@ bool ClothWorld::contacts(std::vector<ClothContact>& found) const
                                     });
 }
 
+bool ClothWorld::stepContacts(std::vector<ClothStepContact>& found) const
+{
+    const auto recordOf = [](const StepContact& contact)
+    {
+        ClothStepContact own = {};
+        own.m_cloth = indexOf(contact.m_cloth.m_body);
+        own.m_obstacle = contact.m_other.m_body ? -1 : indexOf(contact.m_object);
+        own.m_triangle = contact.m_triangle;
+        own.m_other = contact.m_other.m_body ? indexOf(contact.m_other.m_body) : -1;
+        for (int i = 0; i < 3; ++i)
+        {
+            own.m_nodes[i] = contact.m_cloth.m_nodes[i];
+            own.m_otherNodes[i] = contact.m_other.m_nodes[i];
+            own.m_weights[i] = contact.m_cloth.m_weights[i];
+            own.m_otherWeights[i] = contact.m_other.m_weights[i];
+            own.m_normal[i] = contact.m_normal[i];
+            own.m_point[i] = contact.m_point[i];
+            own.m_impulse[i] = contact.m_impulse[i];
+        }
+        own.m_gap = contact.m_gap;
+        own.m_thickness = contact.m_thickness;
+        own.m_timeOfImpact = contact.m_timeOfImpact;
+        return own;
+    };
+    return m_implementation->answer("stepContacts", false,
+                                    [&]
+                                    {
+                                        found.clear();
+                                        for (const StepContact& contact : m_implementation->state().m_records.list())
+                                            found.push_back(recordOf(contact));
+                                        return true;
+                                    });
+}
+
 bool ClothWorld::clothTriangles(std::vector<ClothTriangles>& found) const
 {
     return m_implementation->answer("clothTriangles", false,

@@ -162,9 +162,10 @@ void CollisionStep::addPair(const PairNote& note)
         m_mirrors.push_back(&cloth);
         m_state.m_found.nameCloth(clothId, note.m_cloth);
     }
-    m_state.m_found.nameObstacle(obstacleId, note.m_obstacle.m_object, note.m_motion);
+    m_state.m_found.nameObstacle(obstacle, note.m_motion);
     if (!m_paired.insert(std::uint64_t(clothId) << 32 | obstacleId).second) return;
     m_pairs.push_back(makePair(note, cloth, obstacleId));
+    m_state.m_found.namePair({note.m_cloth, obstacleId, float(note.m_thickness)});
     const SurfaceBox bounds = boundsOf(note);
     btVector3 low = bounds.m_low, high = bounds.m_high;
     // Accounts for a negative margin: it makes Bullet's box smaller than the mesh, by up to √3 times the margin when

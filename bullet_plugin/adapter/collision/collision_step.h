@@ -115,7 +115,7 @@ private:
     void receiveHeld(Detection detection, const TakeSolved& takeSolved = nullptr);
     float allowanceOf(MeshId cloth);
     void receive(const ContactList& contacts, Detection detection);
-    std::vector<SolverContact> impactsOf(const BodyContacts& body) const;
+    std::vector<SolverContact> impactsOf(const BodyContacts& body, std::vector<const Contact*>* found = nullptr) const;
     std::vector<const Pair*> findJammed(std::vector<bool>& isJammed) const;
     static bool endsBehind(const BodyContacts& body);
     bool holdStill();

@@ -123,14 +123,17 @@ void CollisionStep::receiveAll(Detection detection, const TakeSolved& takeSolved
     receive(contacts, detection);
 }
 
-// Lists the body's contacts that its nodes' paths meet.
-std::vector<SolverContact> CollisionStep::impactsOf(const BodyContacts& body) const
+// Lists the body's contacts that its nodes' paths meet. found: if not null, gets the pipeline's, in the same order.
+std::vector<SolverContact> CollisionStep::impactsOf(const BodyContacts& body, std::vector<const Contact*>* found) const
 {
     std::vector<SolverContact> impacts;
     for (const FeatureContacts& feature : body.m_contacts.m_features)
         for (std::uint32_t i = 0; feature.m_leastTime < 1 && i < feature.m_count; ++i)
-            if (feature.m_contacts[i].m_time < 1)
-                impacts.push_back(body.m_contacts.resolve(m_state.m_found.source(), feature.m_contacts[i]));
+        {
+            if (!(feature.m_contacts[i].m_time < 1)) continue;
+            impacts.push_back(body.m_contacts.resolve(m_state.m_found.source(), feature.m_contacts[i]));
+            if (found) found->push_back(feature.m_contacts + i);
+        }
     return impacts;
 }
 
@@ -147,7 +150,14 @@ std::vector<SolverContact> CollisionStep::dynamicImpactsOf(const BodyContacts& b
 bool CollisionStep::cutAtImpactsOf(BodyContacts& body, Cut cut, std::vector<Vec3>* slides)
 {
     const float perSecond = body.m_contacts.m_movesOnly ? 0 : body.perSecond();
-    if (!cutAtImpacts(body.nodes(), impactsOf(body), cut, perSecond, slides)) return false;
+    const bool records = m_state.m_records.isOn();
+    std::vector<const Contact*> found;
+    std::vector<Vec3> impulses;
+    const std::vector<SolverContact> impacts = impactsOf(body, records ? &found : nullptr);
+    if (!cutAtImpacts(body.nodes(), impacts, cut, perSecond, slides, records ? &impulses : nullptr)) return false;
+    for (std::size_t i = 0; i < found.size(); ++i)
+        if (vec3Dot(impulses[i], impulses[i]) > 0)
+            m_state.m_records.add(ContactRecords::pushOf(m_state.m_found, *found[i], impulses[i]));
     writeShifted(body.nodes(), *body.m_body);
     return true;
 }
@@ -358,7 +368,7 @@ void CollisionStep::followDynamic()
         pair.m_start.m_motion = pair.m_note.m_motion;
         mirror.follow(m_state.pipeline(), pair.m_note.m_motion);
         mirror.setBodyEnd(pair.m_note.m_dynamic->getWorldTransform());
-        m_state.m_found.nameObstacle(pair.m_obstacle, pair.m_note.m_dynamic, pair.m_note.m_motion);
+        m_state.m_found.nameObstacle(mirror, pair.m_note.m_motion);
         BodyContacts& body = *bodyOf(pair.m_cloth);
         body.m_contacts.m_movesOnly = body.m_hasDynamicPair;
         watch(*body.m_body);

@@ -157,6 +157,38 @@ std::uint64_t PairStarts::findMeeting(const StartingPair& pair, const MeshProbe&
     return count;
 }
 
+// Lists the pairs of triangles in m_meeting for Plugin::flaggedPairs().
+void PairStarts::flag(const StartingPair& pair, const MeshProbe& probe)
+{
+    const std::vector<std::int32_t>& triangles = pair.m_cloth->faces().triangles();
+    const ObstacleKey& obstacle = pair.m_obstacle->key();
+    FlaggedPair flagged = {};
+    flagged.m_flag = PairFlag::StartsIntersecting;
+    flagged.m_body = pair.m_cloth->body();
+    flagged.m_object = obstacle.m_object;
+    flagged.m_shape = obstacle.m_shape;
+    std::fill_n(flagged.m_otherNodes, 3, -1);
+    for (const MeetingFace& meeting : m_meeting)
+    {
+        std::copy_n(&triangles[3 * std::size_t(meeting.m_face)], 3, flagged.m_nodes);
+        if (flagged.m_nodes[2] == flagged.m_nodes[1]) flagged.m_nodes[2] = -1;  // a solid link
+        for (const std::uint32_t triangle : meeting.m_triangles)
+        {
+            const std::int32_t source = m_state.pipeline().sourceTriangle(pair.m_obstacle->id(), triangle);
+            const TriangleName name = source < 0 ? TriangleName{-1, -1} : pair.m_obstacle->nameOf(std::size_t(source));
+            flagged.m_part = name.m_part;
+            flagged.m_triangle = name.m_triangle;
+            for (int k = 0; k < 3; ++k)
+            {
+                const btVector3 own = vectorOf(probe.corner(triangle, k));
+                float* corner = flagged.m_corners[k];
+                writePosition(pair.m_isMovable ? pair.m_motion.m_start * own : own, corner);
+            }
+            m_state.m_flagged.push_back(flagged);
+        }
+    }
+}
+
 void PairStarts::tellMargins(const StartingPair& pair) const
 {
     const btSoftBody& cloth = *pair.m_cloth->body();
@@ -249,6 +281,7 @@ void PairStarts::check(const StartingPair& pair, const std::vector<int>& jumped,
     }
     ++m_intersectingPairs;
     m_intersections += guard.m_intersections;
+    flag(pair, probe);
     const bool pushed = probe.isClosed();
     tell(pair, guard, pushed);
     if (pushed) pushApart(pair, probe, guard, body);

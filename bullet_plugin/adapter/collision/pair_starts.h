@@ -98,6 +98,7 @@ private:
     bool mayMeet(const StartingPair& pair, Guard& guard);
     MeshProbe* probeOf(const StartingPair& pair);
     std::uint64_t findMeeting(const StartingPair& pair, const MeshProbe& probe);
+    void flag(const StartingPair& pair, const MeshProbe& probe);
     void tellMargins(const StartingPair& pair) const;
     void tell(const StartingPair& pair, Guard& guard, bool pushed);
     void pushApart(const StartingPair& pair, const MeshProbe& probe, Guard& guard, BodyContacts& body);

@@ -240,7 +240,9 @@ void appendTriangles(const LockedPart& part, const UsedVertices& used, const Par
             usable = usable && place >= 0 && isFinite(mesh, static_cast<std::size_t>(corners[k]));
         }
         if (reading.m_mirrored) std::swap(corners[1], corners[2]);
-        if (usable) mesh.m_triangles.insert(mesh.m_triangles.end(), corners, corners + 3);
+        if (!usable) continue;
+        mesh.m_triangles.insert(mesh.m_triangles.end(), corners, corners + 3);
+        mesh.m_names.add(reading.m_part, t);
     }
 }
 
@@ -270,7 +272,8 @@ void appendConvex(const btConvexShape& shape, const btTransform& pose, WorldMesh
 void appendSurface(const btCollisionShape& shape, const btTransform& pose, const ReadPart& part, WorldMesh& mesh)
 {
     std::vector<btVector3> vertices;
-    readSurface(shape, part.m_boxes, part.m_filter ? *part.m_filter : TriangleFilter(), vertices, mesh.m_triangles);
+    readSurface(shape, part.m_boxes, part.m_filter ? *part.m_filter : TriangleFilter(), vertices, mesh.m_triangles,
+                &mesh.m_names);
     for (const btVector3& vertex : vertices)
         appendPosition(pose * vertex, mesh);
 }
@@ -332,6 +335,7 @@ btScalar marginBeyondBounds(const btCollisionShape& shape)
 void readMesh(const btCollisionShape& shape, const btTransform& pose, const ReadPart& part, WorldMesh& mesh)
 {
     mesh.m_triangles.clear();
+    mesh.m_names.clear();
     mesh.m_positions.clear();
     if (isConvexShape(shape))
         appendConvex(static_cast<const btConvexShape&>(shape), pose, mesh);

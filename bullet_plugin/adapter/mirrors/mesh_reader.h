@@ -12,6 +12,7 @@
 
 #include "LinearMath/btTransform.h"
 #include "bullet_plugin/adapter/mirrors/surface_reader.h"
+#include "bullet_plugin/adapter/mirrors/triangle_names.h"
 
 class btCollisionShape;
 
@@ -20,6 +21,7 @@ namespace drape
 struct WorldMesh
 {
     std::vector<std::int32_t> m_triangles;  // 3 per triangle
+    TriangleNames m_names;                  // the triangles as Bullet names them; none of a convex shape
     std::vector<float> m_positions;         // x y z per vertex, m, world frame
     std::uint64_t m_topologyHash = 0;       // hash of the triangles and the number of vertices
     std::uint64_t m_positionHash = 0;

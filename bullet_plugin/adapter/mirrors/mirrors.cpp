@@ -282,6 +282,7 @@ void ObstacleMirror::reload(Pipeline& pipeline, const btTransform& pose, bool is
     }
     m_topologyHash = mesh.m_topologyHash;
     m_positionHash = mesh.m_positionHash;
+    m_names = std::move(mesh.m_names);
 }
 
 // Takes new positions; the pose is unchanged unless it came with them.

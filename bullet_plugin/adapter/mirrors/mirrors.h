@@ -169,6 +169,8 @@ public:
     MeshProbe& moveBefore() const;
     // The pipeline's positions at that time, and the largest displacement of a vertex, m.
     const std::vector<float>& positions() const { return m_positions; }
+    // Returns how Bullet names a triangle of the pipeline's mesh.
+    TriangleName nameOf(std::size_t triangle) const { return m_names.name(triangle); }
     float mostMotion() const { return m_mostMotion; }
 
     int m_owners = 0;
@@ -209,6 +211,7 @@ private:
     std::uint64_t m_deformedStep = 0;
     std::uint64_t m_signature = 0, m_topologyHash = 0, m_positionHash = 0;
     ReadPart m_part;
+    TriangleNames m_names;
     std::vector<SurfaceBox> m_wanted;  // in the coming or current step
     std::uint64_t m_sampledStep = 0;
     bool m_isTooLarge = false;

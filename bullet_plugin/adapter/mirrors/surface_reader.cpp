@@ -147,7 +147,8 @@ public:
 };
 
 void readField(const btHeightfieldTerrainShape& field, const std::vector<SurfaceBox>& boxes,
-               const TriangleFilter& filter, std::vector<btVector3>& vertices, std::vector<std::int32_t>& triangles)
+               const TriangleFilter& filter, std::vector<btVector3>& vertices, std::vector<std::int32_t>& triangles,
+               TriangleNames* names)
 {
     const Grid grid(field);
     ListTriangles list;
@@ -159,6 +160,7 @@ void readField(const btHeightfieldTerrainShape& field, const std::vector<Surface
     for (const CellTriangle& triangle : list.m_found)
     {
         if (filter && !filter(triangle.m_part, triangle.m_triangle)) continue;
+        if (names) names->add(triangle.m_part, triangle.m_triangle);
         for (const btVector3& corner : triangle.m_corners)
         {
             const auto added = indices.emplace(grid.key(corner), static_cast<std::int32_t>(vertices.size()));
@@ -266,12 +268,11 @@ bool isSurfaceReadable(const btCollisionShape& shape, const std::vector<SurfaceB
 }
 
 void readSurface(const btCollisionShape& shape, const std::vector<SurfaceBox>& boxes, const TriangleFilter& filter,
-                 std::vector<btVector3>& vertices, std::vector<std::int32_t>& triangles)
+                 std::vector<btVector3>& vertices, std::vector<std::int32_t>& triangles, TriangleNames* names)
 {
-    if (isPlane(shape))
-        readPlane(planeOf(shape), boxes, vertices, triangles);
-    else
-        readField(fieldOf(shape), boxes, filter, vertices, triangles);
+    if (!isPlane(shape)) return readField(fieldOf(shape), boxes, filter, vertices, triangles, names);
+    readPlane(planeOf(shape), boxes, vertices, triangles);
+    if (names && !triangles.empty()) names->add(0, 0);
 }
 
 void sampleSurface(const btCollisionShape& shape, const std::vector<SurfaceBox>& boxes, std::vector<btVector3>& points)

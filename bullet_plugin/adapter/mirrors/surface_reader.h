@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "BulletCollision/CollisionShapes/btConcaveShape.h"
+#include "bullet_plugin/adapter/mirrors/triangle_names.h"
 #include "drape/plugin.h"
 
 namespace drape
@@ -59,9 +60,11 @@ SurfaceBox surfaceBounds(const btCollisionShape& shape, const btTransform& pose,
 // Returns whether the boxes cover at most as many cells as a step reads.
 bool isSurfaceReadable(const btCollisionShape& shape, const std::vector<SurfaceBox>& boxes);
 
-// filter: of the triangles of a height field; null for all.
+// filter: of the triangles of a height field; null for all. names: gets their names, which are 0 for a plane's
+// triangle; null for none.
 void readSurface(const btCollisionShape& shape, const std::vector<SurfaceBox>& boxes, const TriangleFilter& filter,
-                 std::vector<btVector3>& vertices, std::vector<std::int32_t>& triangles);
+                 std::vector<btVector3>& vertices, std::vector<std::int32_t>& triangles,
+                 TriangleNames* names = nullptr);
 
 // Lists vertices that change with the surface in the boxes: at 36 places of each box.
 void sampleSurface(const btCollisionShape& shape, const std::vector<SurfaceBox>& boxes, std::vector<btVector3>& points);

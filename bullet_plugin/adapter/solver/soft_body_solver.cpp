@@ -1,5 +1,6 @@
 #include "drape/soft_body_solver.h"
 
+#include "LinearMath/btQuickprof.h"
 #include "bullet_plugin/adapter/motion/motion_bounds.h"
 #include "bullet_plugin/adapter/solver/body_jobs.h"
 #include "bullet_plugin/adapter/solver/solver_work.h"
@@ -28,6 +29,7 @@ SoftBodySolver::~SoftBodySolver()
 void SoftBodySolver::predictMotion(btScalar dt)
 {
     if (!m_work) return btDefaultSoftBodySolver::predictMotion(dt);
+    BT_PROFILE("Drape predictMotion");
     const ThreadWatch::Call call = m_state->beginCall();
     const auto failed = [&](const CaughtException& caught)
     { m_state->fail("drape::SoftBodySolver::predictMotion", caught); };
@@ -45,6 +47,7 @@ void SoftBodySolver::predictMotion(btScalar dt)
 void SoftBodySolver::solveConstraints(btScalar dt)
 {
     if (!m_work) return btDefaultSoftBodySolver::solveConstraints(dt);
+    BT_PROFILE("Drape solveConstraints");
     const ThreadWatch::Call call = m_state->beginCall();
     const DefaultFloats floats;
     const auto failed = [&](const CaughtException& caught)
@@ -74,6 +77,7 @@ void SoftBodySolver::updateSoftBodies()
     Stopwatch watch;
     // Bullet's function does the same on this thread if there is no state.
     if (!m_work) return btDefaultSoftBodySolver::updateSoftBodies();
+    BT_PROFILE("Drape normals");
     const ThreadWatch::Call call = m_state->beginCall();
     const auto isOnHost = [this](const btSoftBody& body)
     { return body.isActive() && !m_state->m_kept.isOnDevice(body); };

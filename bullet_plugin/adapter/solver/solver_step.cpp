@@ -1,7 +1,9 @@
 // The order of a step: detection, the solver, and what follows them.
 #include <algorithm>
 #include <atomic>
+#include <unordered_set>
 
+#include "LinearMath/btQuickprof.h"
 #include "bullet_plugin/adapter/motion/bounds_guard.h"
 #include "bullet_plugin/adapter/pairs/eligibility.h"
 #include "bullet_plugin/adapter/solver/body_jobs.h"
@@ -93,7 +95,7 @@ void SoftBodySolver::Work::chooseStage()
         nodes += substepNodes(*m_bodies[i]);
     if (m_state.m_kept.anyBegun()) nodes = SIZE_MAX;  // wherever others would be solved
     m_meetings.begin(m_bodies, [this](const btSoftBody& body) { return isSteppedBody(body); });
-    if (nodes > 0 && !m_meetings.any()) m_stage = m_state.pipeline().solveStage(nodes);
+    if (nodes > 0 && !m_meetings.any() && !m_state.m_records.isOn()) m_stage = m_state.pipeline().solveStage(nodes);
 }
 
 // Returns the pairs of the step. A dynamic body beside cloth that Bullet solves is not pushed by it.
@@ -116,9 +118,13 @@ void SoftBodySolver::Work::detect()
     StepStatistics& statistics = m_state.m_statistics;
     if (m_usage.hasFallen(elementsOf(statistics))) giveBackRoom(m_state);
     Stopwatch watch;
-    step.begin(takeNotes(), [this](btSoftBody& body) { bringToHost(body); });
-    bringFreeToHost(m_bodies);
+    {
+        BT_PROFILE("Drape mirrors");
+        step.begin(takeNotes(), [this](btSoftBody& body) { bringToHost(body); });
+        bringFreeToHost(m_bodies);
+    }
     m_parts.m_mirrorMs += watch.lapMs();
+    BT_PROFILE("Drape detection");
     const bool follows = m_stage && mayFollow();
     if (!follows) bringAllToHost(m_bodies);
     step.submit(follows ? ContactPlace::Device : ContactPlace::Host);
@@ -199,9 +205,53 @@ void SoftBodySolver::Work::endSubsteps()
     statistics.m_invalidNodes = std::max(statistics.m_invalidNodes, invalid.load());
 }
 
+// Records the contacts of the step with what the solver gave.
+void SoftBodySolver::Work::recordSolved()
+{
+    ContactRecords& records = m_state.m_records;
+    if (!records.isOn()) return;
+    const FoundContacts& found = m_state.m_found;
+    const ContactList list = found.source().list();
+    records.addDetected(found);
+    const auto isListed = [&](const Contact* contact) { return contact >= list.begin() && contact < list.end(); };
+    m_solver->forImpulses(
+        [&](const Contact* contact, Vec3 impulse)
+        {
+            if (isListed(contact)) records.add(ContactRecords::pushOf(found, *contact, impulse));
+        });
+    for (int i = 0; i < m_bodies.size(); ++i)
+    {
+        const btSoftBody& body = *m_bodies[i];
+        const RigidRows* const rows = substepNodes(body) > 0 ? substepsOf(body)->rigidRows() : nullptr;
+        if (!rows) continue;
+        records.addBullets(body, *rows);
+        const BodyContacts* const contacts = contactsOf(body);
+        for (std::size_t k = 0; contacts && k < contacts->m_dynamicContacts.size(); ++k)
+            records.add(
+                ContactRecords::pushOf(found, *contacts->m_dynamicContacts[k].m_contact, rows->featureImpulse(k)));
+    }
+    m_meetings.record(records);
+}
+
+// Returns what the last closing sweeps gave, for ContactRecords::add(). The bodies of its contacts tell whose it is.
+std::vector<ContactPush> SoftBodySolver::Work::closingPushes()
+{
+    std::vector<ContactPush> pushes;
+    const FoundContacts& found = m_state.m_found;
+    const ContactList list = found.source().list();
+    m_solver->forImpulses(
+        [&](const Contact* contact, Vec3 impulse)
+        {
+            if (contact >= list.begin() && contact < list.end())
+                pushes.push_back(ContactRecords::pushOf(found, *contact, impulse));
+        });
+    return pushes;
+}
+
 // Solves the bodies that the device has not solved behind the detection, and writes all results back.
 void SoftBodySolver::Work::solveBodies()
 {
+    BT_PROFILE("Drape solver");
     StepParts& parts = m_parts;
     m_bulletLinks.clear();
     m_solved.assign(static_cast<std::size_t>(m_bodies.size()), 0);
@@ -215,6 +265,7 @@ void SoftBodySolver::Work::solveBodies()
     m_state.m_statistics.m_clothsSolvedOnDevice =
         m_onDevice +
         m_solver->solve(m_touched, m_free, m_state.m_found.source(), m_onDevice > 0 ? nullptr : m_stage, rows);
+    recordSolved();
     double linksMs = 0;
     for (const std::unique_ptr<BulletLinks>& links : m_bulletLinks)
         linksMs += links->ms();
@@ -245,15 +296,30 @@ void SoftBodySolver::Work::closeOffPath(const std::vector<BodyContacts*>& bodies
         checked.push_back(body->nodes());
     }
     m_solver->close(cloths, m_state.m_found.source());
+    const std::vector<ContactPush> pushes = closingPushes();
     for (BodyContacts* body : bodies)
         writeShifted(body->nodes(), *body->m_body);
     m_step->detectRealPaths();
+    std::unordered_set<const btSoftBody*> undone;
     for (std::size_t i = 0; i < bodies.size(); ++i)
     {
         if (!m_step->passesSurface(*bodies[i]) && !leavesBounds(m_state, *bodies[i]->m_body)) continue;
         for (std::size_t node = 0; node < checked[i].count(); ++node)
             writeNode(checked[i], node, bodies[i]->m_body->m_nodes[int(node)]);
+        undone.insert(bodies[i]->m_body);
     }
+    for (const ContactPush& push : pushes)
+        if (undone.count(push.m_contact.m_cloth.m_body) == 0) m_state.m_records.add(push);
+}
+
+// Checks the real paths of bodies beside obstacles and other cloth.
+void SoftBodySolver::Work::checkPaths(CollisionStep& step)
+{
+    BT_PROFILE("Drape check");
+    closeOffPath(step.checkOffPath());
+    guardMeetings();
+    step.reportMeetingDeformed();
+    step.end();
 }
 
 void SoftBodySolver::Work::solveStep()
@@ -265,6 +331,10 @@ void SoftBodySolver::Work::solveStep()
     m_onDevice = 0;
     m_stage = nullptr;
     m_meetings.clear();
+    m_state.m_records.setOn(m_state.m_asksRecords || m_state.m_listener);
+    m_state.m_records.clear();
+    m_state.m_flagged.clear();
+    m_solver->recordImpulses(m_state.m_records.isOn());
     leaveToBullet();
     parts.m_readMs += watch.lapMs();
     detect();
@@ -274,11 +344,9 @@ void SoftBodySolver::Work::solveStep()
     StepStatistics& statistics = m_state.m_statistics;
     const double waitMs = statistics.m_waitMs, uploadMs = step->uploadMs();
     watch.lapMs();
-    closeOffPath(step->checkOffPath());
-    guardMeetings();
-    step->reportMeetingDeformed();
-    step->end();
+    checkPaths(*step);
     if (m_state.settings().m_clothSleeps) letSleep();
+    m_state.m_records.end();
     statistics.m_clothsKept = endKept(m_bodies);
     parts.m_uploadMs = step->uploadMs();
     parts.m_checkMs = watch.lapMs() - (statistics.m_waitMs - waitMs) - (parts.m_uploadMs - uploadMs);
@@ -289,6 +357,7 @@ void SoftBodySolver::Work::solveStep()
     static_cast<StepParts&>(statistics) = parts;
     const std::size_t all = m_state.pipeline().deviceWaits();
     statistics.m_deviceWaits = all > waits ? all - waits : 0;  // a device may have been opened anew
+    m_state.tellContacts(&m_owner, double(m_dt));
 }
 
 // Lets bodies fall asleep that have been slow for as long as Bullet waits with rigid bodies. Bullet puts them to sleep

@@ -93,7 +93,10 @@ struct SoftBodySolver::Work
     void solveBodies();
     void closeOffPath(const std::vector<BodyContacts*>& bodies);
     ClothRows* findMeetings();
+    void recordSolved();
+    std::vector<ContactPush> closingPushes();
     void guardMeetings();
+    void checkPaths(CollisionStep& step);
     void letSleep();
 
     // Prediction.
@@ -130,6 +133,7 @@ struct SoftBodySolver::Work
     void giveBackRoom(PluginState& state)
     {
         m_solver.reset(new StepSolver(state.threads()));
+        m_solver->recordImpulses(state.m_records.isOn());
         m_step->giveBackRoom();
         state.m_found.clear();
         state.pipeline().giveBackRoom();

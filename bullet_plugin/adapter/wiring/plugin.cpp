@@ -152,6 +152,36 @@ std::vector<ClothPairInfo> Plugin::clothPairs() const
     return guardedOr(std::vector<ClothPairInfo>(), [&] { return m_state->m_clothPairs; });
 }
 
+std::vector<FlaggedPair> Plugin::flaggedPairs() const
+{
+    if (!m_state) return {};
+    return guardedOr(std::vector<FlaggedPair>(), [&] { return m_state->m_flagged; });
+}
+
+void Plugin::recordContacts(bool record)
+{
+    if (m_state) m_state->m_asksRecords = record;
+}
+
+const std::vector<StepContact>& Plugin::stepContacts() const
+{
+    static const std::vector<StepContact> none;
+    return m_state ? m_state->m_records.list() : none;
+}
+
+void Plugin::setContactListener(ContactListener listener)
+{
+    if (!m_state) return;
+    const auto set = [&]
+    {
+        std::shared_ptr<const ContactListener> next;
+        if (listener) next = std::make_shared<const ContactListener>(std::move(listener));
+        m_state->m_listener = std::move(next);
+        return true;
+    };
+    guardedOr(false, set);
+}
+
 std::string Plugin::whyStock(const btCollisionObject* objectA, const btCollisionObject* objectB) const
 {
     if (!m_state) return outOfMemory();

@@ -4,6 +4,7 @@
 
 #include "BulletCollision/CollisionDispatch/btCollisionDispatcher.h"
 #include "BulletSoftBody/btSoftBodySolvers.h"
+#include "LinearMath/btQuickprof.h"
 #include "bullet_plugin/adapter/mirrors/convex_reader.h"
 #include "bullet_plugin/adapter/pairs/eligibility.h"
 #include "bullet_plugin/adapter/wiring/wiring.h"
@@ -56,6 +57,23 @@ void PluginState::log(const std::string& line) const
     try
     {
         if (m_settings.m_log) m_settings.m_log(line.c_str());
+    }
+    catch (...)
+    {
+        // The app's function failed; the step continues.
+    }
+}
+
+void PluginState::tellContacts(const btSoftBodySolver* solver, double timeStep)
+{
+    const std::shared_ptr<const ContactListener> listener = m_listener;  // the call may replace it
+    if (!listener) return;
+    BT_PROFILE("Drape listener");
+    const StepContacts contacts = {solver, timeStep, m_records.list()};
+    const CallersFloats floats;
+    try
+    {
+        (*listener)(contacts);
     }
     catch (...)
     {
@@ -120,6 +138,8 @@ void PluginState::forgetScene() noexcept
     m_cloths.clear();
     m_obstacles.clear();
     m_found.clear();
+    m_records.clear();
+    m_flagged.clear();
 }
 
 void PluginState::fail(const char* call, const CaughtException& caught) noexcept

@@ -20,6 +20,7 @@
 #include "drape/plugin.h"
 #include "bullet_plugin/adapter/cloth_cloth/self_collision.h"
 #include "bullet_plugin/adapter/collision/found_contacts.h"
+#include "bullet_plugin/adapter/contacts/contact_records.h"
 #include "bullet_plugin/adapter/kept/kept_bodies.h"
 #include "bullet_plugin/adapter/motion/kinematic_motion.h"
 #include "bullet_plugin/adapter/mirrors/mirrors.h"
@@ -73,6 +74,7 @@ public:
     const Error& error() const { return m_pipeline ? m_pipeline->lastError() : m_error; }
     const DeviceReport& device() const;
     Pipeline& pipeline() { return *m_pipeline; }
+    const Pipeline& pipeline() const { return *m_pipeline; }
     const Settings& settings() const { return m_settings; }
     // The pipeline's; they outlive it.
     ThreadTeam& threads() { return *m_threads; }
@@ -160,11 +162,18 @@ public:
     const ClothMirror* mirrorOf(const btSoftBody& body) const;
     void dropOldMirrors();
 
+    // Calls the listener, if there is one, with the records of a step of the solver. timeStep: s.
+    void tellContacts(const btSoftBodySolver* solver, double timeStep);
+
     StepStatistics m_statistics;
+    ContactRecords m_records;
+    bool m_asksRecords = false;                         // Plugin::recordContacts()
+    std::shared_ptr<const ContactListener> m_listener;  // null for none
     FoundContacts m_found;
     KeptBodies m_kept{*this};
     SelfCollision m_selfCollision;
     std::vector<ClothPairInfo> m_clothPairs;  // triangles that intersected where the last step began
+    std::vector<FlaggedPair> m_flagged;       // other pairs of the last step
 
 private:
     struct Owned

@@ -48,6 +48,15 @@ public:
                       std::uint64_t limit, ThreadTeam& threads);
     // Returns the share of its path that each node went in the last apply().
     const std::vector<double>& shares() const { return m_shares; }
+    // Calls visit(nodes, split, isForced) for each pair that the last result counts as forced, or else as meeting at
+    // its start. Of its four nodes the first `split` are the first feature's.
+    template <class Visit>
+    void forFlagged(const Visit& visit) const
+    {
+        for (const Guarded& pair : m_pairs)
+            if (pair.m_rests && (!pair.m_plane.m_isCertified || isForced(pair)))
+                visit(pair.m_nodes, pair.m_paths.m_split, pair.m_plane.m_isCertified);
+    }
     // Returns whether held nodes carried a node in the last apply(): its path is another one then.
     bool isCarried(std::size_t node) const { return m_isCarried[node] != 0; }
 

@@ -48,6 +48,18 @@ PooledFeature pooledFeature(const MeshPool& cloths, const Contact& contact)
     return feature;
 }
 
+// Returns a triangle of the obstacle that has the contact's feature, an index as given; -1 for none.
+std::int32_t obstacleTriangle(const PooledMesh& mesh, const Contact& contact)
+{
+    const Topology& topology = mesh.m_topology;
+    const std::uint32_t feature = contact.m_obstacleFeature;
+    const std::uint32_t kept = contact.m_kind == DRAPE_NODE_FACE ? feature - mesh.m_firstTriangle
+                               : contact.m_kind == DRAPE_FACE_VERTEX
+                                   ? topology.m_vertexTriangle[feature - mesh.m_firstVertex]
+                                   : topology.m_edgeTriangle[feature - mesh.m_firstEdge];
+    return kept < topology.m_sourceTriangle.size() ? std::int32_t(topology.m_sourceTriangle[kept]) : -1;
+}
+
 std::int32_t nodeOf(const PooledFeature& feature, const PooledMesh& cloth, int corner)
 {
     const std::uint32_t node = feature.m_nodes[corner];
@@ -95,6 +107,7 @@ ContactView viewContact(const Scene& scene, const StepPairs& pairs, const Contac
     view.m_cloth = cloth.m_id;
     view.m_obstacle = obstacles.mesh(obstacle).m_id;
     view.m_kind = contact.m_kind;
+    view.m_obstacleTriangle = obstacleTriangle(obstacles.mesh(obstacle), contact);
     view.m_triangle = std::int32_t(cloth.m_topology.m_sourceTriangle[feature.m_keptTriangle]);
     for (int i = 0; i < 3; ++i)
     {

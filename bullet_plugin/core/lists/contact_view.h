@@ -20,12 +20,13 @@ struct ContactView
 {
     MeshId m_cloth;
     MeshId m_obstacle;
-    std::uint32_t m_kind;     // DRAPE_NODE_FACE …; DRAPE_FACE_VERTEX for a free edge at a vertex
-    std::int32_t m_nodes[3];  // nodes of the cloth feature, indices in that cloth; -1 where unused
-    std::int32_t m_triangle;  // a cloth triangle with the feature, index as given to addCloth; -1: none
-    float m_weights[3];       // by m_nodes, sum 1
-    float m_normal[3];        // unit, from the obstacle to the side from which the cloth came
-    float m_point[3];         // m, on the obstacle
+    std::uint32_t m_kind;             // DRAPE_NODE_FACE …; DRAPE_FACE_VERTEX for a free edge at a vertex
+    std::int32_t m_nodes[3];          // nodes of the cloth feature, indices in that cloth; -1 where unused
+    std::int32_t m_obstacleTriangle;  // a triangle with the obstacle's feature, index as given to addObstacle; -1: none
+    std::int32_t m_triangle;          // a cloth triangle with the feature, index as given to addCloth; -1: none
+    float m_weights[3];               // by m_nodes, sum 1
+    float m_normal[3];                // unit, from the obstacle to the side from which the cloth came
+    float m_point[3];                 // m, on the obstacle
     float m_gap0, m_gap1;  // m, along the normal at the step's start and end as the obstacle sees them, thickness not
                            // subtracted
     float m_thickness;     // m, of the pair

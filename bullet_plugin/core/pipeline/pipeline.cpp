@@ -205,6 +205,12 @@ std::unique_ptr<MeshProbe> Pipeline::makeProbe(MeshId obstacle)
     return std::make_unique<MeshProbe>(mesh.m_topology, mesh.m_order, mesh.m_positions);
 }
 
+std::int32_t Pipeline::sourceTriangle(MeshId obstacle, std::uint32_t triangle) const
+{
+    const Topology& topology = m_implementation->m_scene.m_obstacles.existing(obstacle).m_topology;
+    return triangle < topology.m_sourceTriangle.size() ? std::int32_t(topology.m_sourceTriangle[triangle]) : -1;
+}
+
 void Pipeline::addPair(MeshId cloth, MeshId obstacle, float thickness)
 {
     m_implementation->m_input.addPair(NamedPair{cloth, obstacle, thickness});

@@ -176,6 +176,8 @@ public:
     // Returns the message of the device's failure if the status reports one, or of the mesh that was refused since.
     const Error& lastError() const;
 
+    // Returns the index, as given to addObstacle(), of a triangle of its makeProbe(); -1 for none.
+    std::int32_t sourceTriangle(MeshId obstacle, std::uint32_t triangle) const;
     // Resolves a contact of the last finish().
     ContactView view(const Contact& contact) const;
     // Resolves one of selfContacts().

@@ -44,6 +44,8 @@ public:
     // Lists only triangles for which takes(triangle) is true.
     void listMeeting(const Vec3 corners[3], std::vector<std::uint32_t>& triangles,
                      const std::function<bool(std::uint32_t)>& takes) const;
+    // Returns corner i of a triangle, m.
+    Vec3 corner(std::uint32_t triangle, int i) const;
     // Computes the mean of the points at which the given triangle's edges pass through the listed triangles, and their
     // edges through it. Returns false if there are none: all lie in one plane.
     bool middleOfMeeting(const Vec3 corners[3], const std::vector<std::uint32_t>& triangles, Vec3& middle) const;
@@ -97,7 +99,6 @@ private:
     static double squaredDistance(const Node& node, Vec3 point);
     template <class Visit>
     void forTrianglesIn(const Box& box, const Visit& visit) const;
-    Vec3 corner(std::uint32_t triangle, int i) const;
     bool countCrossings(Vec3 point, Vec3 target, unsigned& crossings) const;
 
     std::vector<Triangle> m_triangles;

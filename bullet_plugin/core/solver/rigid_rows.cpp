@@ -16,6 +16,12 @@ void forRows(const std::vector<RigidAnchor>& anchors, const std::vector<RigidCon
     std::for_each(contacts.begin(), contacts.end(), call);
 }
 
+// Returns what a row has pushed in a substep, kg m.
+Vec3 pushOf(const RigidPlane& plane, const RigidRowState& state)
+{
+    return vec3AddScaled(state.m_held, plane.m_normal, state.m_multiplier);
+}
+
 bool yields(const RigidBody& body)
 {
     return body.m_inverseMass.x > 0 && body.m_inverseMass.y > 0 && body.m_inverseMass.z > 0;
@@ -28,6 +34,7 @@ void RigidRows::clear()
     m_contacts.clear();
     m_anchors.clear();
     m_contactStates.clear();
+    m_contactImpulses.clear();
     m_anchorStates.clear();
     m_features.clear();
     m_near.clear();
@@ -44,6 +51,7 @@ void RigidRows::add(const RigidContact& contact)
     refer(contact.m_body);
     m_contacts.push_back(contact);
     m_contactStates.push_back({});
+    m_contactImpulses.push_back(vec3(0, 0, 0));
 }
 
 void RigidRows::add(const RigidAnchor& anchor)
@@ -57,7 +65,7 @@ void RigidRows::add(const RigidFeature& feature, float bodyTime)
 {
     refer(feature.m_body);
     m_bodyTime = bodyTime;
-    m_features.push_back({feature, 0, 0, {}});
+    m_features.push_back({feature, 0, 0, vec3(0, 0, 0), {}});
 }
 
 bool RigidRows::bodiesYield() const
@@ -182,7 +190,7 @@ void RigidRows::limitSpeeds()
 {
     m_featureStep.m_left = 0;  // the step is over
     const float unitTime = m_featureStep.m_time * m_featureStep.m_perCorrection;
-    for (const FeatureRow& row : m_features)
+    for (FeatureRow& row : m_features)
     {
         const RigidFeature& feature = row.m_feature;
         const RigidPlane& plane = feature.m_plane;
@@ -196,6 +204,7 @@ void RigidRows::limitSpeeds()
         // A push's mobility, less the time that it acts.
         const float mobility = row.m_inverseMass + (mobilityOf(row) - row.m_inverseMass) / unitTime;
         const Vec3 impulse = vec3Scale(plane.m_normal, std::min(excess / mobility, row.m_pushed));
+        row.m_impulse = vec3Sub(row.m_impulse, impulse);
         for (std::uint32_t k = 0; k < feature.m_count; ++k)
         {
             const float share = feature.m_weights[k] * inverseMassOf(feature, k);
@@ -210,13 +219,19 @@ void RigidRows::end()
     for (std::size_t i = 0; i < m_anchors.size(); ++i)
         rigidEndRow(&m_substep, m_anchors[i].m_body, m_anchors[i].m_arm, &m_anchorStates[i]);
     for (std::size_t i = 0; i < m_contacts.size(); ++i)
+    {
         rigidEndRow(&m_substep, m_contacts[i].m_body, m_contacts[i].m_arm, &m_contactStates[i]);
+        m_contactImpulses[i] = vec3AddScaled(m_contactImpulses[i], pushOf(m_contacts[i].m_plane, m_contactStates[i]),
+                                             m_substep.m_perCorrection);
+    }
     for (FeatureRow& row : m_features)
     {
         const std::uint32_t body = row.m_feature.m_body;
         rigidEndRow(&m_featureStep, body, row.m_feature.m_arm, &row.m_state);
         row.m_state.m_carried = vec3AddScaled(row.m_state.m_carried, lagOf(body), -m_featureStep.m_time);
         row.m_pushed += row.m_state.m_multiplier * m_featureStep.m_perCorrection;
+        row.m_impulse =
+            vec3AddScaled(row.m_impulse, pushOf(row.m_feature.m_plane, row.m_state), m_featureStep.m_perCorrection);
     }
 }
 

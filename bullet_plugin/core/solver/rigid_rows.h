@@ -47,6 +47,10 @@ public:
     const std::vector<RigidBody>& bodies() const { return *m_bodies; }
     const std::vector<RigidContact>& contacts() const { return m_contacts; }
     const std::vector<RigidAnchor>& anchors() const { return m_anchors; }
+    // Return what the i-th contact of nodes, or of features, has given the cloth since clear(), N s; friction included.
+    // Of the host's substeps alone.
+    Vec3 contactImpulse(std::size_t i) const { return m_contactImpulses[i]; }
+    Vec3 featureImpulse(std::size_t i) const { return m_features[i].m_impulse; }
     // The cloth's position in the order in which a sweep visits cloths.
     void setTurn(std::size_t turn) { m_turn = turn; }
     std::size_t turn() const { return m_turn; }
@@ -78,6 +82,7 @@ private:
         RigidFeature m_feature;
         float m_inverseMass;  // 1/kg, of the nodes at the contact's point
         float m_pushed;       // N s, along the normal in the step
+        Vec3 m_impulse;       // N s, given to the cloth in the step
         RigidRowState m_state;
     };
 
@@ -94,9 +99,10 @@ private:
     std::vector<RigidAnchor> m_anchors;
     std::vector<RigidRowState> m_contactStates, m_anchorStates;
     std::vector<FeatureRow> m_features;
-    std::vector<std::uint32_t> m_near;  // features that take part in the substep's sweeps
-    SolverNodes* m_nodes = nullptr;     // in a step
-    float m_stepTime = 0;               // s
+    std::vector<Vec3> m_contactImpulses;  // N s, by contact
+    std::vector<std::uint32_t> m_near;    // features that take part in the substep's sweeps
+    SolverNodes* m_nodes = nullptr;       // in a step
+    float m_stepTime = 0;                 // s
     RigidGiven m_given = {};
     RigidSubstep m_substep = {};      // for anchors and contacts of nodes
     RigidSubstep m_featureStep = {};  // for features, in the bodies' time

@@ -92,9 +92,15 @@ void rememberAll(SolverNodes& nodes)
         nodes.remember(i);
 }
 
+// Returns the velocity that a shift after substeps or between Bullet's iterations gives per metre, 1/s.
+float perShift(const ClothContacts& contacts)
+{
+    return contacts.m_perSecond * contacts.m_undamped;
+}
+
 void addShifts(ClothContacts& contacts)
 {
-    const float perSecond = contacts.m_perSecond * contacts.m_undamped;
+    const float perSecond = perShift(contacts);
     for (std::size_t i = 0; i < contacts.m_nodes.count(); ++i)
         contacts.m_nodes.addShift(i, perSecond);
 }
@@ -116,7 +122,7 @@ void StepSolver::begin(const ContactSource& source)
     m_all.clear();
     for (std::size_t i = 0; i < m_cloths.size(); ++i)
     {
-        m_sweeps[i]->assign(m_cloths[i], source);
+        m_sweeps[i]->assign(m_cloths[i], source, m_records);
         m_all.push_back(m_sweeps[i].get());
     }
     m_team.forCloths(m_all, [](ContactSweep& sweep) { sweep.begin(); });
@@ -163,7 +169,8 @@ void StepSolver::restart(int iteration)
     for (ContactSweep* sweep : m_turn)
     {
         const SolverCloth& cloth = sweep->cloth();
-        sweep->restart(passedAfter(cloth, iteration), cloth.m_substeps ? actingSweepsOf(cloth.m_substeps->count()) : 0);
+        sweep->restart(passedAfter(cloth, iteration), cloth.m_substeps ? actingSweepsOf(cloth.m_substeps->count()) : 0,
+                       0, cloth.m_substeps ? 1 / cloth.m_substeps->correctionTime() : perShift(sweep->contacts()));
         if (cloth.m_rigid) cloth.m_rigid->begin(sweep->nodes(), *cloth.m_substeps, iteration);
     }
 }
@@ -186,11 +193,21 @@ void StepSolver::sweepInTurns()
     }
 }
 
+// Returns the velocity that rows of cloth with cloth give per metre in a substep, or after the last one, 1/s. The
+// cloths may differ; it is the first one's.
+float StepSolver::perPushOfRows(bool closing) const
+{
+    const auto meets = [](const ContactSweep* sweep) { return sweep->cloth().m_meetsCloth; };
+    const auto first = std::find_if(m_all.begin(), m_all.end(), meets);
+    if (first == m_all.end()) return 0;
+    return closing ? perShift((*first)->contacts()) : 1 / (*first)->cloth().m_substeps->correctionTime();
+}
+
 // Projects rows of cloth with cloth until they hold, or kClosingRowSweeps times. Contacts with obstacles follow.
 void StepSolver::closeRows()
 {
     if (!m_rows) return;
-    m_rows->begin(1, 0);
+    m_rows->begin(1, 0, perPushOfRows(true));
     m_rows->project(kClosingRowSweeps, 1, kTolerated, kClosingTolerance);
 }
 
@@ -216,7 +233,8 @@ void StepSolver::sweepContacts(int iteration)
     m_team.forCloths(m_turn, boundShifts);
     select(m_iterating, m_turn, [](const ContactSweep* sweep) { return hasContacts(sweep) || sweep->cloth().m_rigid; });
     restart(iteration);
-    if (m_rows) m_rows->begin(passedAfter(m_all.front()->cloth(), iteration), substepTime(m_all.front()->cloth()));
+    const SolverCloth& first = m_all.front()->cloth();
+    if (m_rows) m_rows->begin(passedAfter(first, iteration), substepTime(first), perPushOfRows(false));
     sweepInTurns();
     forRigid(m_iterating, [](RigidRows& rigid) { rigid.end(); });
     select(m_iterating, m_turn, isCallers);
@@ -310,7 +328,8 @@ void StepSolver::close()
     closeRows();
     applyLimits(m_all);
     for (ContactSweep* sweep : m_touching)
-        sweep->restart(1, 0, sweep->cloth().m_substeps ? toleratedViolation(sweep->contacts()) : 0.0f);
+        sweep->restart(1, 0, sweep->cloth().m_substeps ? toleratedViolation(sweep->contacts()) : 0.0f,
+                       sweep->contacts().m_movesOnly ? 0.0f : perShift(sweep->contacts()));
     m_team.run(m_touching);
     m_open = m_touching;
     for (int done = 1;; ++done)
@@ -439,6 +458,7 @@ std::size_t StepSolver::finishBehind(SolveStage& stage, bool hasWaited)
 std::size_t StepSolver::solve(const std::vector<SolverCloth>& cloths, const std::vector<SolverCloth>& free,
                               const ContactSource& source, SolveStage* stage, ClothRows* rows)
 {
+    m_touching.clear();
     divide(cloths, free, stage);
     m_rows = rows && !rows->empty() ? rows : nullptr;
     if (!m_onDevice.empty())
@@ -463,6 +483,7 @@ std::size_t StepSolver::solve(const std::vector<SolverCloth>& cloths, const std:
 
 void StepSolver::close(const std::vector<SolverCloth>& cloths, const ContactSource& source)
 {
+    m_touching.clear();
     if (cloths.empty()) return;
     m_cloths = cloths;
     begin(source);

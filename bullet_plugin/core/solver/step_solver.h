@@ -76,6 +76,17 @@ public:
     // Runs the closing sweeps alone, for cloths whose nodes are at the ends of the paths along which their contacts
     // were found.
     void close(const std::vector<SolverCloth>& cloths, const ContactSource& source);
+    // Makes the coming calls keep the impulses of contacts. Nothing else changes.
+    void recordImpulses(bool records) { m_records = records; }
+    // Calls visit(contact, impulse) for each contact that pushed a cloth in the last solve() or close() on the host: a
+    // pointer to the contact, and the impulse that it gave the cloth, N s. Empty unless recordImpulses() was on.
+    template <class Visit>
+    void forImpulses(const Visit& visit)
+    {
+        if (!m_records) return;
+        for (ContactSweep* sweep : m_touching)
+            sweep->forImpulses(visit);
+    }
 
 private:
     // The nodes of a cloth, and its links, which are the core's.
@@ -102,6 +113,7 @@ private:
     void sweepContacts(int iteration);
     void restart(int iteration);
     void sweepInTurns();
+    float perPushOfRows(bool closing) const;
     void closeRows();
     void endIteration(int iteration);
     void iterate();
@@ -119,6 +131,7 @@ private:
     Cloths m_all, m_touching, m_iterating, m_turn, m_meeting, m_open, m_resting, m_others;
     std::vector<LinkedNodes> m_own;  // working memory of forSubsteps()
     ClothRows* m_rows = nullptr;     // the step's; null for none
+    bool m_records = false;
     PackedStep m_packed;
     std::vector<const SolverCloth*> m_keeping;                               // working memory of keepMomenta()
     std::vector<SolverCloth> m_onDevice, m_onHost, m_freeOnHost, m_refused;  // working memory of solve()

@@ -366,6 +366,14 @@ DRAPE_C_FUNCTION DrapeResult drapeWorldStatistics(const DrapeWorld* world, Drape
 // Sets *contacts to the contacts of the last step in canonical order and *count to their number. Valid until the
 // handle's next call of this function. Errors: DRAPE_BAD_INPUT for null, DRAPE_OUT_OF_MEMORY.
 DRAPE_C_FUNCTION DrapeResult drapeWorldContacts(DrapeWorld* world, const ClothContact** contacts, size_t* count);
+// Makes the coming steps keep contacts with their impulses, or not (the default); see Plugin::recordContacts(). Errors:
+// DRAPE_BAD_INPUT for null.
+DRAPE_C_FUNCTION DrapeResult drapeWorldRecordContacts(DrapeWorld* world, int record);
+// Sets *contacts to the contacts of the last step with their impulses, of cloth with cloth, too, and *count to their
+// number: none unless they were recorded. Valid until the handle's next call of this function. Errors: as
+// drapeWorldContacts().
+DRAPE_C_FUNCTION DrapeResult drapeWorldStepContacts(DrapeWorld* world, const ClothStepContact** contacts,
+                                                    size_t* count);
 // Sets *pairs to the triangles of cloth with self collision that intersected where the last step began, and *count
 // to their number. Valid until the handle's next call of this function. Errors: as drapeWorldContacts().
 DRAPE_C_FUNCTION DrapeResult drapeWorldClothTriangles(DrapeWorld* world, const ClothTriangles** pairs, size_t* count);

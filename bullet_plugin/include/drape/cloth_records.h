@@ -92,6 +92,25 @@ typedef struct ClothContact
     float m_thickness;   // distance at which the two rest, m
 } ClothContact;
 
+// A contact of the last step with what it did: with an obstacle, with another cloth or of a cloth with itself.
+typedef struct ClothStepContact
+{
+    int32_t m_cloth;          // the cloth
+    int32_t m_obstacle;       // the obstacle; -1 beside cloth, or if it was put into Bullet's world directly
+    int32_t m_triangle;       // a triangle of the obstacle, as given, that has the contact's feature; -1 beside cloth
+    int32_t m_other;          // the other cloth, or the same one; -1 beside an obstacle
+    int32_t m_nodes[3];       // nodes of the cloth's feature; -1 if unused
+    int32_t m_otherNodes[3];  // nodes of the other cloth's feature; -1 if unused
+    float m_weights[3];       // weights of the first nodes, with the sum 1
+    float m_otherWeights[3];  // weights of the others
+    float m_normal[3];        // unit vector from the obstacle or the other feature to the cloth
+    float m_point[3];         // point on the obstacle or the other feature, m
+    float m_impulse[3];       // given to the cloth in the step, friction included, N s
+    float m_gap;              // distance where the step ended, thickness of the pair subtracted, m
+    float m_thickness;        // distance at which the two rest, m
+    float m_timeOfImpact;     // share of the step, below 1 if the cloth's path met the surface
+} ClothStepContact;
+
 // Two triangles of cloth that intersected where the last step began.
 typedef struct ClothTriangles
 {

@@ -86,6 +86,9 @@ public:
     bool copyNodes(int cloth, const NodeArrays& arrays) const;
     // Replaces `found` by the contacts of the last step, in canonical order.
     bool contacts(std::vector<ClothContact>& found) const;
+    // Replaces `found` by the contacts of the last step with their impulses. Empty unless
+    // plugin().recordContacts(true) was called before that step.
+    bool stepContacts(std::vector<ClothStepContact>& found) const;
     // Replaces `found` by the triangles of cloth with self collision that intersected where the last step began.
     bool clothTriangles(std::vector<ClothTriangles>& found) const;
 

@@ -9,6 +9,7 @@
 #pragma once
 
 #include "drape/collision_configuration.h"
+#include "drape/debug_draw.h"
 #include "drape/export.h"
 #include "drape/plugin.h"
 #include "drape/report.h"

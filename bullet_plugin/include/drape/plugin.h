@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "drape/contacts.h"
 #include "drape/export.h"
 #include "drape/node_arrays.h"
 #include "drape/precision.h"
@@ -104,6 +105,26 @@ public:
     // Returns the triangles of cloth that intersected where that step began, among bodies of setSelfCollision(). Empty
     // if memory runs out.
     std::vector<ClothPairInfo> clothPairs() const;
+    // Returns the pairs of triangles or features that step could not keep apart: those that intersected where it began,
+    // and cloth that pinned nodes bring together. Empty if memory runs out.
+    std::vector<FlaggedPair> flaggedPairs() const;
+
+    // Keeps the contacts of each coming step with their impulses, for stepContacts(). Off by default; off costs nothing
+    // and forgets them with the next step. On, steps give the same results, but the host solves all cloth, kept bodies
+    // included. If memory runs out in a step, the step ends like any other without memory, and has no records.
+    void recordContacts(bool record);
+    // Returns the contacts of the last internal step of any world of the plugin, within the activation distance, with
+    // obstacles, other cloth and the cloth itself. Empty unless recordContacts() or a listener was on in that step, and
+    // after a step that failed. Valid until the next step begins.
+    const std::vector<StepContact>& stepContacts() const;
+    // Calls the listener at the end of each internal step of a world of the plugin, with the contacts of that step. The
+    // call comes from the thread that steps the world, within stepSimulation(), when soft bodies have their final
+    // positions and velocities and before Bullet's normals follow. The listener may read the world and call this
+    // class's const functions and setContactListener(); it must not change the world. Its exceptions are dropped. Null
+    // removes it. The step has the cost of recordContacts() while there is one. Steps that fail, or run without Drape,
+    // make no call. If memory runs out, nothing changes.
+    void setContactListener(ContactListener listener);
+
     // Returns one line with the device, the reason for it and the last step. "out of memory" if memory runs out.
     std::string report() const;
 

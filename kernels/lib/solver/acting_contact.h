@@ -180,15 +180,17 @@ DRAPE_FUNCTION int renewPlane(ActingContact* contact, const FeatureNodes* nodes,
     return 1;
 }
 
-// Removes from the nodes' velocities what the contact gained by recovering a depth that the step began with.
-DRAPE_FUNCTION void limitSpeed(const ActingContact* contact, DRAPE_GLOBAL NodeState* states)
+// Removes from the nodes' velocities what the contact gained by recovering a depth that the step began with. Returns
+// the impulse that it takes back along the normal, N s.
+DRAPE_FUNCTION float limitSpeed(const ActingContact* contact, DRAPE_GLOBAL NodeState* states)
 {
     const ContactRow* row = &contact->m_row;
     float speed = 0.0f;
     for (DRAPE_UINT k = 0; k < row->m_count; ++k)
         speed += vec3Dot(states[row->m_nodes[k]].m_velocity, row->m_normal) * row->m_weights[k];
     const float excess = speed - contact->m_speedLimit;
-    if (!(excess > 0.0f) || !(row->m_inverseMobility > 0.0f)) return;  // a renewed plane may rest on pinned nodes alone
+    // A renewed plane may rest on pinned nodes alone.
+    if (!(excess > 0.0f) || !(row->m_inverseMobility > 0.0f)) return 0.0f;
     for (DRAPE_UINT k = 0; k < row->m_count; ++k)
     {
         DRAPE_GLOBAL NodeState* state = states + row->m_nodes[k];
@@ -196,6 +198,7 @@ DRAPE_FUNCTION void limitSpeed(const ActingContact* contact, DRAPE_GLOBAL NodeSt
         state->m_velocity = vec3Add(state->m_velocity, loss);
         state->m_shifted |= DRAPE_NODE_SHIFTED;
     }
+    return excess * row->m_inverseMobility;
 }
 
 DRAPE_NAMESPACE_END

@@ -33,6 +33,12 @@ DRAPE_FUNCTION float rowViolation(const ContactRow* row, const DRAPE_NODE_SPACE 
     return row->m_level - (1.0f - passed) * row->m_advance - vec3Dot(row->m_normal, rowDisplacement(row, nodes));
 }
 
+// Returns what the row has pushed in this phase, kg m.
+DRAPE_FUNCTION Vec3 rowPush(const ContactRow* row)
+{
+    return vec3AddScaled(row->m_held, row->m_normal, row->m_multiplier);
+}
+
 // Computes the push that makes the row hold, or takes back an earlier push that is not needed any more. Friction
 // removes the point's motion since the step's start along the surface, relative to the obstacle, up to Coulomb's bound.
 // displacement: m, of the row's point. tolerated: m, violation that remains. relaxation: share of the rest that is

@@ -71,6 +71,7 @@ void ClothRows::add(const ClothContact& contact)
     }
     const float gap = contact.m_gap0 - contact.m_thickness;
     row.m_split = contact.m_split;
+    row.m_index = contact.m_index;
     row.m_gap0 = contact.m_gap0;
     row.m_thickness = contact.m_thickness;
     row.m_distance = contact.m_thickness + targetGap(gap, 0.0f, contact.m_thickness);
@@ -185,20 +186,26 @@ void ClothRows::repeat(Row& row, float time)
     pushed.m_held = vec3AddScaled(held, pushed.m_normal, -vec3Dot(held, pushed.m_normal));
 }
 
-void ClothRows::begin(float passed, float time)
+// Adds what the last phase pushed to the row's impulse, and keeps it as forces if the phase had a time.
+void ClothRows::endPhase(Row& row) const
 {
-    const float perSquare = m_time > 0.0f ? 1.0f / (m_time * m_time) : 0.0f;
+    const ContactRow& pushed = row.m_row;
+    if (pushed.m_multiplier > 0.0f) row.m_impulse = vec3AddScaled(row.m_impulse, rowPush(&pushed), m_perPush);
+    if (!(m_time > 0.0f)) return;
+    const float perSquare = 1.0f / (m_time * m_time);
+    row.m_kept.m_push = pushed.m_multiplier * perSquare;
+    row.m_kept.m_held = vec3Scale(pushed.m_held, perSquare);
+}
+
+void ClothRows::begin(float passed, float time, float perPush)
+{
     const auto beginGroup = [&](std::size_t group)
     {
         m_nearEnds[group] = m_firsts[group];
         for (std::size_t i = m_firsts[group]; i < m_firsts[group + 1]; ++i)
         {
             Row& row = m_rows[i];
-            if (m_time > 0.0f)
-            {
-                row.m_kept.m_push = row.m_row.m_multiplier * perSquare;
-                row.m_kept.m_held = vec3Scale(row.m_row.m_held, perSquare);
-            }
+            endPhase(row);
             row.m_row.m_multiplier = 0.0f;
             row.m_row.m_held = vec3(0.0f, 0.0f, 0.0f);
             takePlane(row, passed);
@@ -209,6 +216,7 @@ void ClothRows::begin(float passed, float time)
     };
     m_climb.run(threads(), beginGroup);
     m_time = time;
+    m_perPush = perPush;
     if (!(time > 0.0f)) return;
     const auto pushGroup = [&](std::size_t group)
     {
@@ -264,6 +272,7 @@ void ClothRows::limitSpeed(Row& row, float perSecond)
     const float excess = std::min(speed, std::max(0.0f, recovered) * perSecond);
     if (!(excess > 0.0f)) return;
     const Vec3 loss = vec3Scale(row.m_row.m_normal, -excess * row.m_row.m_inverseMobility);
+    row.m_impulse = vec3Add(row.m_impulse, loss);
     for (int k = 0; k < 4; ++k)
         if (row.m_inverseMasses[k] > 0.0f)
             row.m_states[k]->m_velocity =

@@ -32,10 +32,11 @@ struct ClothContact
     Vec3 m_resting[4];         // m, positions of nodes without a cloth
     std::uint64_t m_key;       // names the pair of features; greater than that of the contact before
     int m_split;
-    Vec3 m_normal;      // unit, from the second feature to the side from which the first came
-    float m_gap0;       // m, along the normal at the step's start
-    float m_thickness;  // m, of the pair
-    float m_friction;   // coefficient
+    Vec3 m_normal;          // unit, from the second feature to the side from which the first came
+    float m_gap0;           // m, along the normal at the step's start
+    float m_thickness;      // m, of the pair
+    float m_friction;       // coefficient
+    std::uint32_t m_index;  // the caller's, for ClothRows::forImpulses()
 };
 
 class ClothRows
@@ -51,13 +52,25 @@ public:
     void arrange(const std::vector<Vec3>& positions);
     // Begins a phase: takes the planes where the nodes are now. passed: share of the step that has passed at the
     // phase's end. time: s, of the phase's substep, which starts with the pushes of the one before; 0: with none.
-    void begin(float passed, float time);
+    // perPush: 1/s, the velocity that the caller gives a node per metre by which the phase moves it; for forImpulses().
+    void begin(float passed, float time, float perPush = 0);
     // Projects the rows that take part `sweeps` times, or until no violation exceeds `enough`. relaxation: share of a
     // violation that is corrected. tolerated: violation that may remain. All are shares of the thickness.
     void project(int sweeps, float relaxation, float tolerated = 0, float enough = 0);
     // Removes from the nodes' velocities what rows gained by recovering a depth that the step began with. perSecond:
     // 1/s, steps per second.
     void limitSpeeds(float perSecond);
+    // Calls visit(index, impulse) for each contact that pushed in the step: ClothContact::m_index, and what it gave the
+    // first feature and took from the second, N s.
+    template <class Visit>
+    void forImpulses(const Visit& visit) const
+    {
+        for (const Row& row : m_rows)
+        {
+            const Vec3 impulse = vec3AddScaled(row.m_impulse, rowPush(&row.m_row), m_perPush);
+            if (vec3Dot(impulse, impulse) > 0) visit(row.m_index, impulse);
+        }
+    }
 
 private:
     // A row's pushes in a step's last substep, as forces.
@@ -83,13 +96,16 @@ private:
         float m_gap0;       // m
         float m_distance;   // m, least at the step's end
         float m_thickness;  // m
-        ContactRow m_row;   // its normal, level, multiplier and friction; nodes and weights are those above
+        std::uint32_t m_index;
+        Vec3 m_impulse;    // N s, given in the phases before this one
+        ContactRow m_row;  // its normal, level, multiplier and friction; nodes and weights are those above
     };
 
     static bool isNear(const Row& row);
     static Vec3 wayOf(const Row& row);
     static void takePlane(Row& row, float passed);
     static void repeat(Row& row, float time);
+    void endPhase(Row& row) const;
     void findKept();
     static void shift(Row& row, Vec3 by);
     std::uint32_t groupOf(const Row& row) const;
@@ -107,6 +123,7 @@ private:
     std::vector<std::size_t> m_firsts;    // by group, the first of its rows; then the end
     std::vector<std::uint32_t> m_near;    // by group, from m_firsts on: rows that take part
     std::vector<std::size_t> m_nearEnds;  // by group, in m_near
+    float m_perPush = 0;                  // 1/s, of the phase
     std::vector<float> m_worst;           // by group, the violation that the last sweep met
 };
 }  // namespace drape

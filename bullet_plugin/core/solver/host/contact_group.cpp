@@ -109,7 +109,7 @@ ContactGroup::Row ContactGroup::makeRow(const SweptCloth& cloth, const Block& bl
     const FeatureNodes nodes = featureNodes(cloth.nodes(), contact.m_nodes, contact.m_carry);
     const ContactSettings settings = {contact.m_thickness, contact.m_friction, contacts.m_hardness,
                                       contacts.m_perSecond};
-    return {actingContact(&nodes, &contact.m_plane, &settings, contact.m_gaps), contact.m_carry};
+    return {actingContact(&nodes, &contact.m_plane, &settings, contact.m_gaps), contact.m_carry, vec3(0, 0, 0)};
 }
 
 // Turns a contact of a face with a vertex to where the two are nearest now; see drape::renewPlane().
@@ -210,10 +210,24 @@ float ContactGroup::projectBlock(const SweptCloth& cloth, std::size_t index, uns
     return worst;
 }
 
-void ContactGroup::beginPhase(unsigned phase)
+// Adds what the phase's pushes give to the impulses of their rows. Once in a phase, at its end.
+void ContactGroup::addImpulses()
 {
-    if (m_phase == phase) return;
-    m_phase = phase;
+    for (const std::size_t index : m_pushingBlocks)
+        for (int lane = 0; lane < kLanes; ++lane)
+        {
+            if (!(m_pushing[index] >> lane & 1)) continue;
+            Row& row = m_rows[std::size_t(m_rowsOf[index].m_row[lane])];
+            row.m_impulse = vec3AddScaled(row.m_impulse, rowPush(&row.m_acting.m_row), m_perPush);
+        }
+}
+
+void ContactGroup::beginPhase(const SweptCloth& cloth)
+{
+    if (m_phase == cloth.m_phase) return;
+    if (cloth.m_records) addImpulses();
+    m_phase = cloth.m_phase;
+    m_perPush = cloth.m_perPush;
     for (const std::size_t index : m_pushingBlocks)
     {
         for (int lane = 0; lane < kLanes; ++lane)
@@ -236,7 +250,7 @@ std::pair<std::size_t, std::size_t> ContactGroup::rangeOf(Kinds kinds) const
 
 float ContactGroup::sweep(const SweptCloth& cloth, Kinds kinds)
 {
-    beginPhase(cloth.m_phase);
+    beginPhase(cloth);
     const auto [first, last] = rangeOf(kinds);
     const Block* const blocks = m_blocks.data();
     const SolverNode* const nodes = cloth.nodes().nodes();
@@ -262,13 +276,17 @@ void ContactGroup::sweepActing(const SweptCloth& cloth)
                 if (pushing & 1u) project(cloth, m_rows[std::size_t(m_rowsOf[index].m_row[lane])].m_acting, worst);
 }
 
-void ContactGroup::limitSpeeds(const SweptCloth& cloth, Kinds kinds) const
+void ContactGroup::limitSpeeds(const SweptCloth& cloth, Kinds kinds)
 {
     const auto [first, last] = rangeOf(kinds);
     for (std::size_t i = first; i < last; ++i)
-        for (const int row : m_rowsOf[i].m_row)
-            if (row >= 0 && m_rows[std::size_t(row)].m_acting.m_pushed)
-                limitSpeed(&m_rows[std::size_t(row)].m_acting, cloth.nodes().states());
+        for (const int index : m_rowsOf[i].m_row)
+        {
+            if (index < 0 || !m_rows[std::size_t(index)].m_acting.m_pushed) continue;
+            Row& row = m_rows[std::size_t(index)];
+            const float taken = limitSpeed(&row.m_acting, cloth.nodes().states());
+            row.m_impulse = vec3AddScaled(row.m_impulse, row.m_acting.m_row.m_normal, -taken);
+        }
 }
 
 bool ContactGroup::hasPushed() const

@@ -31,6 +31,8 @@ struct SweptCloth
     float m_tolerated = 0;   // m, violation that a projection leaves
     int m_actingSweeps = 0;  // see ContactSweep::restart()
     unsigned m_phase = 0;    // see ContactSweep::restart()
+    float m_perPush = 0;     // 1/s, velocity that a push of this phase gives per metre
+    bool m_records = false;  // impulses are kept, see ContactGroup::forImpulses()
 
     SolverNodes& nodes() const { return m_contacts->m_nodes; }
     // Bound on how far levels lie above those at the step's end, m.
@@ -64,12 +66,26 @@ public:
     // Projects the contacts that act in this phase m_actingSweeps times, in the order of sweeps.
     void sweepActing(const SweptCloth& cloth);
     // Removes from the nodes' velocities what a contact gained by recovering a depth that the step began with.
-    void limitSpeeds(const SweptCloth& cloth, Kinds kinds) const;
+    void limitSpeeds(const SweptCloth& cloth, Kinds kinds);
     // Returns whether a contact has pushed in the step.
     bool hasPushed() const;
     // Returns whether a contact that was violated at any time ends with less than kNearShare of the thickness between
     // its features' points, so that the features may have passed each other.
     bool mayHavePassed(const SweptCloth& cloth) const;
+    // Calls visit(contact, impulse) for each contact that has pushed in the step: a pointer to the contact, and what it
+    // gave the cloth, N s. Call after limitSpeeds(), with SweptCloth::m_records set since makeBlocks().
+    template <class Visit>
+    void forImpulses(const Visit& visit)
+    {
+        addImpulses();
+        for (std::size_t i = 0; i < m_blocks.size(); ++i)
+            for (int lane = 0; lane < kLanes; ++lane)
+            {
+                const int row = m_rowsOf[i].m_row[lane];
+                if (row >= 0 && m_rows[std::size_t(row)].m_acting.m_pushed)
+                    visit(m_blocks[i].m_contacts + lane, m_rows[std::size_t(row)].m_impulse);
+            }
+    }
 
 private:
     static constexpr int kLanes = 4;  // contacts side by side
@@ -98,6 +114,7 @@ private:
     {
         ActingContact m_acting;
         Carry m_carry;
+        Vec3 m_impulse;  // N s, given in the phases before this one; only if the cloth records
     };
 
     // Returns the first block of these kinds, and the end of the last one.
@@ -113,7 +130,8 @@ private:
     template <int count>
     static Lanes excessOfNodes(const Block& block, const SolverNode* nodes, float slack);
     static bool project(const SweptCloth& cloth, ActingContact& acting, float& worst);
-    void beginPhase(unsigned phase);
+    void beginPhase(const SweptCloth& cloth);
+    void addImpulses();
     float projectBlock(const SweptCloth& cloth, std::size_t index, unsigned due);
 
     std::vector<const FeatureContacts*> m_features;
@@ -125,5 +143,6 @@ private:
     std::vector<Row> m_rows;
     std::vector<std::size_t> m_pushingBlocks;  // blocks with rows that have pushed in this phase
     unsigned m_phase = 0;                      // phase of the last sweep
+    float m_perPush = 0;                       // 1/s, of that phase
 };
 }  // namespace drape

@@ -17,8 +17,9 @@ constexpr std::size_t kLeastShared = 512;
 constexpr std::size_t kLeastNodesShared = 8192;
 }  // namespace
 
-void ContactSweep::assign(const SolverCloth& cloth, const ContactSource& source)
+void ContactSweep::assign(const SolverCloth& cloth, const ContactSource& source, bool records)
 {
+    m_cloth.m_records = records;
     m_owner = &cloth;
     m_cloth.m_contacts = cloth.m_contacts;
     m_cloth.m_source = &source;

@@ -31,15 +31,17 @@ class ContactSweep
 {
 public:
     // Starts another cloth; memory is kept. Cloth and source must stay unchanged until the last sweep, except for the
-    // nodes.
-    void assign(const SolverCloth& cloth, const ContactSource& source);
+    // nodes. records: keeps impulses, see forImpulses().
+    void assign(const SolverCloth& cloth, const ContactSource& source, bool records = false);
     // Prepares the cloth once after assign(). SweepTeam::start() does the rest.
     void begin();
     // Begins a phase, with no pushes. passed: the share of the step that has passed, up to 1; obstacles stand there.
     // actingSweeps: after each sweep; 0 unless links are swept in turns with the contacts, which then share their loads
-    // (kernels/lib/solver/contact_row.h). tolerated: m, violation that the sweeps leave.
-    void restart(float passed, int actingSweeps = 0, float tolerated = 0)
+    // (kernels/lib/solver/contact_row.h). tolerated: m, violation that the sweeps leave. perPush: 1/s, the velocity
+    // that the caller gives a node per metre by which the phase moves it; for forImpulses().
+    void restart(float passed, int actingSweeps = 0, float tolerated = 0, float perPush = 0)
     {
+        m_cloth.m_perPush = perPush;
         m_cloth.m_tolerated = tolerated;
         m_cloth.m_actingSweeps = actingSweeps;
         ++m_cloth.m_phase;
@@ -51,6 +53,13 @@ public:
     SolverNodes& nodes() const { return m_cloth.nodes(); }
     // Returns whether a contact has pushed since begin().
     bool hasPushed() const;
+    // Calls visit(contact, impulse) for each contact that has pushed, see ContactGroup::forImpulses().
+    template <class Visit>
+    void forImpulses(const Visit& visit)
+    {
+        for (std::size_t group = 0; group < m_parts->groupCount(); ++group)
+            m_groups[group].forImpulses(visit);
+    }
 
 private:
     friend class SweepTeam;

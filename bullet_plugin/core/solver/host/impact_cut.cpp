@@ -27,6 +27,7 @@ struct Left
     Carry m_carry;
     Vec3 m_normal = {};
     float m_friction = 0;
+    std::size_t m_contact = 0;  // index
 
     void take(const Left& other)
     {
@@ -63,14 +64,16 @@ bool anyCuts(const std::vector<SolverContact>& contacts)
 }
 
 bool cutAtImpacts(SolverNodes& nodes, const std::vector<SolverContact>& contacts, Cut cut, float perSecond,
-                  std::vector<Vec3>* slides)
+                  std::vector<Vec3>* slides, std::vector<Vec3>* impulses)
 {
+    if (impulses) impulses->assign(contacts.size(), vec3(0, 0, 0));
     if (contacts.empty()) return false;
     std::vector<Left> left(nodes.count());
     Left least;
-    for (const SolverContact& contact : contacts)
+    for (std::size_t i = 0; i < contacts.size(); ++i)
     {
-        const Left own{shareLeft(contact), contact.m_carry, contact.m_plane.m_normal, contact.m_friction};
+        const SolverContact& contact = contacts[i];
+        const Left own{shareLeft(contact), contact.m_carry, contact.m_plane.m_normal, contact.m_friction, i};
         least.take(own);
         for (int k = 0; k < 3 && contact.m_nodes[k] >= 0; ++k)
             left[std::size_t(contact.m_nodes[k])].take(own);
@@ -82,8 +85,15 @@ bool cutAtImpacts(SolverNodes& nodes, const std::vector<SolverContact>& contacts
         const Left& own = cut == Cut::WholeBody ? least : left[i];
         if (!(own.m_share < 1) || !(nodes.inverseMass(i) > 0)) continue;
         const Vec3 lost = shorten(nodes, i, own, perSecond);
+        Vec3 gained = vec3Scale(lost, -1);
         if (slides && own.m_share > 0)
-            (*slides)[i] = slideOf(vec3Add((*slides)[i], lost), own.m_normal, own.m_friction);
+        {
+            const Vec3 before = (*slides)[i];
+            (*slides)[i] = slideOf(vec3Add(before, lost), own.m_normal, own.m_friction);
+            gained = vec3Add(gained, vec3Sub((*slides)[i], before));
+        }
+        if (impulses)
+            (*impulses)[own.m_contact] = vec3AddScaled((*impulses)[own.m_contact], gained, 1 / nodes.inverseMass(i));
     }
     return true;
 }

@@ -32,7 +32,8 @@ bool anyCuts(const std::vector<SolverContact>& contacts);
 // Cuts the paths of nodes that constraints move. Shifts the nodes to the new ends; their velocities lose perSecond
 // (1/s) times the rest of the path. slides: if not null, gets by node, m/s, what friction leaves of that along the
 // surface, after that of the step's earlier cuts. A node that starts where its path ends is held there and gets none.
-// Returns whether any path was cut.
+// Returns whether any path was cut. impulses: if not null, gets by contact what its cuts gave the cloth, N s; slides
+// count.
 bool cutAtImpacts(SolverNodes& nodes, const std::vector<SolverContact>& contacts, Cut cut, float perSecond,
-                  std::vector<Vec3>* slides = nullptr);
+                  std::vector<Vec3>* slides = nullptr, std::vector<Vec3>* impulses = nullptr);
 }  // namespace drape

@@ -1,0 +1,19 @@
+// The scenes of drape_window: a cloth on the bunny or on a ball, and those of scenes/cloth_scene.h.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "scenes/cloth_scene.h"
+
+namespace drape::window
+{
+const std::vector<std::string>& windowSceneNames();
+
+// Returns whether the scene's last obstacle is a floor at y = 0.
+bool hasFloor(const std::string& name);
+// Makes the named scene. detail: 1 is coarse; twice as much has four times as many triangles. models: folder with model
+// files, may be empty. Returns false with one line in `error` if the name is unknown or a model is missing.
+bool makeWindowScene(const std::string& name, int detail, const std::string& models, ClothScene& scene,
+                     std::string& error);
+}  // namespace drape::window
