@@ -18,7 +18,7 @@ constexpr double kResting = 100;  // mm/s
 const MeasureRule kRules[] = {{"invalid", "not finite", -1, 0, 0, kAny},
                               {"nodes_below", "nodes under the ground", -1, 0, 0, kAny},
                               {"depth_mm", "depth, mm", -1, 30, 0.25, kAny},
-                              {"stretch", "stretch", -1, 0.1, 0.05, kAny},
+                              {"stretch", "stretch", -1, 0.1, 0.1, kAny},
                               {"carried", "bodies carried", 1, 0, 0, kAny},
                               {"volume_lost", "volume lost", -1, 0.05, 0.1, kAny},
                               {"pairs", "intersecting pairs", -1, 5, 0.1, kAny},

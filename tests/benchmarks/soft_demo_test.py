@@ -14,7 +14,7 @@ class SoftDemo(ProgramTest):
         listed = run("soft_demo", "--list").stdout.splitlines()
         self.assertEqual([line.split(":")[0] for line in listed], [row["scene"] for row in rows[::2]])
         for row in rows[1::2]:
-            self.assertEqual(row["invalid"], "0.0", row["scene"])
+            self.assertEqual(float(row["invalid"]), 0, row["scene"])
             if row["scene"].startswith("cluster_") or row["scene"] == "tetra_cube":
                 self.assertEqual(row["same_bits"], "true", row["scene"])
                 self.assertEqual(row["links_left_to_bullet"], row["soft_bodies"], row["scene"])
