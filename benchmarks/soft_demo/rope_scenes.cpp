@@ -99,7 +99,7 @@ void addRopeScenes(std::vector<DemoScene>& scenes)
     const DemoScene added[] = {{"ropes", "fifteen ropes between pins, from soft to stiff", 0, buildRopes},
                                {"rope_attach", "box hangs from two ropes", 0, buildRopeAttach},
                                {"sticks", "ball falls on 256 rods", 0, buildSticks},
-                               {"impact", "box falls on the end of a link", 0, buildImpact},
+                               {"impact", "box falls on the end of a link", kLoads, buildImpact, -8.5},
                                {"bending", "frame of links with one free corner", 0, buildBending},
                                {"ropes_on_mesh", "loose ropes fall on a wavy mesh", kWavyGround, buildRopesOnMesh}};
     scenes.insert(scenes.end(), std::begin(added), std::end(added));
