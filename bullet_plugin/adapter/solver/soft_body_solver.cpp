@@ -38,7 +38,8 @@ void SoftBodySolver::predictMotion(btScalar dt)
     Stopwatch watch(m_work->hasBodies());
     m_work->predict(m_softBodySet, dt);
     m_work->m_parts.m_predictMs = watch.lapMs();
-    guarded([&] { coverMotions(*m_state, m_work->m_taken, obstacles, m_state->threads()); }, failed);
+    const auto cover = [&] { coverMotions(*m_state, m_work->m_taken, obstacles, m_state->threads()); };
+    if (!obstacles.empty()) guarded(cover, failed);
     m_work->m_parts.m_mirrorMs += watch.lapMs();
 }
 
@@ -74,6 +75,7 @@ void SoftBodySolver::updateSoftBodies()
     Stopwatch watch(m_softBodySet.size() > 0);
     // Bullet's function does the same on this thread if there is no state.
     if (!m_work) return btDefaultSoftBodySolver::updateSoftBodies();
+    if (m_softBodySet.size() == 0) return;
     const ThreadWatch::Call call = m_state->beginCall();
     const auto isOnHost = [this](const btSoftBody& body)
     { return body.isActive() && !m_state->m_kept.isOnDevice(body); };
