@@ -67,6 +67,8 @@ worlds --backend substeps --kind skirts --most-failing "$skirts"
 # Measured: 0.089 mm/s at most.
 build/release/bin/rest_speeds --models "${DRAPE_MODELS_DIR:-none}" --damping 0.05 --most 0.1 || failed=1
 bash tests/run_mingw.sh || failed=1
+# Bullet's SoftDemo: no scene is worse with Drape.
+build/release/bin/soft_demo --check --csv build/release/soft_demo.csv || failed=1
 bash tests/run_sanitized.sh --full || failed=1
 bash tests/run_fuzzers.sh 300 || failed=1
 exit $failed

@@ -11,11 +11,40 @@ namespace
 thread_local DefaultFloats* t_outer = nullptr;
 }  // namespace
 
+// Saves the app's environment and sets the default one, but for flags of exceptions that are raised already.
+void DefaultFloats::save() noexcept
+{
+    m_isPlain = modesAreDefault();
+    if (m_isPlain)
+    {
+        m_flags = sseRegister();
+        m_x87Status = x87Status();
+        return;
+    }
+    saveFloatState(m_callers);
+    setDefaultFloatState();
+}
+
+void DefaultFloats::restore() const noexcept
+{
+    if (!m_isPlain)
+    {
+        restoreFloatState(m_callers);
+        return;
+    }
+    // Long doubles alone raise the older unit's flags. Its environment is set as a whole.
+    if (((x87Status() ^ m_x87Status) & kExceptionFlags) != 0)
+    {
+        const std::fexcept_t flags = static_cast<std::fexcept_t>(m_x87Status & kExceptionFlags);
+        std::fesetexceptflag(&flags, FE_ALL_EXCEPT);
+    }
+    setSseRegister(m_flags);
+}
+
 DefaultFloats::DefaultFloats() noexcept : m_isOuter(!t_outer)
 {
     if (!m_isOuter) return;
-    saveFloatState(m_callers);
-    setDefaultFloatState();
+    save();
     t_outer = this;
 }
 
@@ -23,21 +52,20 @@ DefaultFloats::~DefaultFloats()
 {
     if (!m_isOuter) return;
     t_outer = nullptr;
-    restoreFloatState(m_callers);
+    restore();
 }
 
 CallersFloats::CallersFloats() noexcept : m_within(t_outer)
 {
     if (!m_within) return;
     t_outer = nullptr;
-    restoreFloatState(m_within->m_callers);
+    m_within->restore();
 }
 
 CallersFloats::~CallersFloats()
 {
     if (!m_within) return;
-    saveFloatState(m_within->m_callers);
-    setDefaultFloatState();
+    m_within->save();
     t_outer = m_within;
 }
 }  // namespace drape

@@ -3,7 +3,8 @@
 // Apps enable traps (feenableexcept), flush subnormal numbers to zero or round another way. Drape compares lanes that
 // may be NaN, and its answers must have the same bits on every back end. So each public function computes in the
 // default environment: no traps, subnormal numbers kept, rounding to nearest. The app's environment comes back
-// afterwards as it was, with its exception flags; nothing is raised by that. Cost: some 50 ns.
+// afterwards as it was, with its exception flags; nothing is raised by that. Cost: some 5 ns on an x86-64 processor if
+// the app's environment is the default one but for its flags, else some 100 ns.
 #pragma once
 
 #include <cfenv>
@@ -22,7 +23,13 @@ public:
 private:
     friend class CallersFloats;
 
-    std::fenv_t m_callers;
+    void save() noexcept;
+    void restore() const noexcept;
+
+    std::fenv_t m_callers;           // unless m_isPlain
+    unsigned m_flags = 0;            // SSE's register; if m_isPlain
+    unsigned short m_x87Status = 0;  // if m_isPlain
+    bool m_isPlain = false;          // the app's modes are the default ones
     bool m_isOuter;
 };
 

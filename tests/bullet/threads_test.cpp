@@ -1,11 +1,15 @@
-// Cloths whose contacts several threads hold: the same courses, to the bit, as with the caller's thread alone.
+// Cloths whose contacts several threads hold, Drape's or the app's: the same courses, to the bit, as with the caller's
+// thread alone.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <vector>
 
+#include <LinearMath/btThreads.h>
+
 #include "scenes/shapes.h"
 #include "tests/bullet/drop_world.h"
+#include "tests/support/job_pool.h"
 
 namespace drape::test
 {
@@ -22,10 +26,11 @@ struct Courses
 };
 
 // Two large cloths and six small ones fall on bumps, which rest, or rise and turn.
-Courses run(unsigned threads, bool moves)
+Courses run(unsigned threads, bool moves, const ParallelFor& parallelFor = nullptr)
 {
     Settings settings = hostSettings();
     settings.m_threads = threads;
+    settings.m_parallelFor = parallelFor;
     Plugin plugin(settings);
     DropWorld world(&plugin);
     MeshShape shape(makeTerrain(3.0f, 0.05f, 96, 3));
@@ -65,6 +70,50 @@ Courses run(unsigned threads, bool moves)
     return courses;
 }
 
+// Returns the run on the caller's thread, which is made once.
+const Courses& runAlone(bool moves)
+{
+    static const Courses runs[2] = {run(1, false), run(1, true)};
+    return runs[moves];
+}
+
+class PoolScheduler : public btITaskScheduler
+{
+public:
+    explicit PoolScheduler(JobPool& pool) : btITaskScheduler("pool"), m_pool(pool) {}
+    int getMaxNumThreads() const override { return 3; }
+    int getNumThreads() const override { return 3; }
+    void setNumThreads(int) override {}
+    void parallelFor(int begin, int end, int, const btIParallelForBody& body) override
+    {
+        m_pool.parallelFor(std::size_t(end - begin),
+                           [&](std::size_t i) { body.forLoop(begin + int(i), begin + int(i) + 1); });
+    }
+    btScalar parallelSum(int begin, int end, int, const btIParallelSumBody& body) override
+    {
+        return body.sumLoop(begin, end);
+    }
+
+private:
+    JobPool& m_pool;
+};
+
+ParallelFor parallelForOf(btITaskScheduler& scheduler)
+{
+    struct Body : btIParallelForBody
+    {
+        explicit Body(const std::function<void(std::size_t)>& job) : m_job(job) {}
+        void forLoop(int begin, int end) const override
+        {
+            for (int i = begin; i < end; ++i)
+                m_job(std::size_t(i));
+        }
+        const std::function<void(std::size_t)>& m_job;
+    };
+    return [&scheduler](std::size_t count, const std::function<void(std::size_t)>& job)
+    { scheduler.parallelFor(0, int(count), 1, Body(job)); };
+}
+
 class ThreadsTest : public testing::TestWithParam<bool>
 {
 };
@@ -72,7 +121,7 @@ class ThreadsTest : public testing::TestWithParam<bool>
 
 TEST_P(ThreadsTest, AnyNumberOfThreadsGivesTheSameTrajectory)
 {
-    const Courses alone = run(1, GetParam());
+    const Courses& alone = runAlone(GetParam());
     ASSERT_GT(alone.m_contactsMax, kShared);
     for (const unsigned threads : {2u, 7u})
     {
@@ -80,6 +129,23 @@ TEST_P(ThreadsTest, AnyNumberOfThreadsGivesTheSameTrajectory)
         EXPECT_EQ(shared.m_hashes, alone.m_hashes) << threads << " threads";
         EXPECT_EQ(shared.m_contactsMax, alone.m_contactsMax);
     }
+}
+
+TEST_P(ThreadsTest, TheAppsJobSystemGivesTheSameTrajectory)
+{
+    JobPool pool(2);
+    EXPECT_EQ(run(3, GetParam(), pool.function()).m_hashes, runAlone(GetParam()).m_hashes);
+    EXPECT_GT(pool.calls(), std::size_t(kSteps));
+}
+
+// Bullet's interface of task schedulers over a pool, as an app may have; Debian's Bullet has none of its own.
+TEST(TaskSchedulers, OfBulletGiveTheSameTrajectory)
+{
+    JobPool pool(3);
+    PoolScheduler scheduler(pool);
+    EXPECT_EQ(run(3, false, parallelForOf(scheduler)).m_hashes, runAlone(false).m_hashes);
+    EXPECT_GT(pool.calls(), std::size_t(kSteps));
+    EXPECT_EQ(run(3, false, parallelForOf(*btGetSequentialTaskScheduler())).m_hashes, runAlone(false).m_hashes);
 }
 
 INSTANTIATE_TEST_SUITE_P(Obstacle, ThreadsTest, testing::Bool(),

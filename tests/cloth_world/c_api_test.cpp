@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstring>
 #include <string>
+#include <vector>
 
 #include "bullet_plugin/adapter/c_api/c_records.h"
 #include <drape/cloth_world.h>
@@ -80,6 +81,26 @@ TEST(CApi, SettingsArriveInCpp)
     EXPECT_EQ(line, "a line");
     flat.m_log = nullptr;
     EXPECT_FALSE(settingsOf(&flat).m_log);
+}
+
+// The app's function gets its user pointer, and each index reaches the job.
+TEST(CApi, AJobSystemRunsEachJob)
+{
+    DrapeSettings flat = {};
+    drapeDefaultSettings(&flat);
+    EXPECT_FALSE(settingsOf(&flat).m_parallelFor);
+    std::size_t jobs = 0;
+    flat.m_parallelFor = [](size_t count, DrapeJob job, void* context, void* user)
+    {
+        *static_cast<std::size_t*>(user) += count;
+        for (size_t i = count; i-- > 0;)
+            job(i, context);
+    };
+    flat.m_parallelForUser = &jobs;
+    std::vector<std::size_t> order;
+    settingsOf(&flat).m_parallelFor(3, [&](std::size_t i) { order.push_back(i); });
+    EXPECT_EQ(jobs, 3u);
+    EXPECT_EQ(order, (std::vector<std::size_t>{2, 1, 0}));
 }
 
 TEST(CApi, StatisticsHaveEveryFieldAndSum)

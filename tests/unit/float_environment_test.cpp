@@ -1,16 +1,125 @@
-// Drape's own floating-point environment, and the caller's afterwards.
-#include "bullet_plugin/core/float_environment.h"
+// The app's floating-point environment around Drape's: modes and flags return as they were.
+#include <gtest/gtest.h>
 
 #include <cfenv>
 #include <limits>
 
-#include <gtest/gtest.h>
+#include "bullet_plugin/core/float_environment.h"
 
 #if defined(__x86_64__) || defined(_M_X64)
 #include <xmmintrin.h>
+#endif
 
 namespace drape::test
 {
+namespace
+{
+volatile float g_zero = 0, g_one = 1, g_result = 0;
+volatile long double g_longZero = 0, g_longOne = 1, g_longResult = 0;
+
+void divideByZero()
+{
+    g_result = g_one / g_zero;
+}
+
+// Raises the flag of the older unit, on processors that have one.
+void divideLongByZero()
+{
+    g_longResult = g_longOne / g_longZero;
+}
+
+class FloatEnvironment : public testing::Test
+{
+protected:
+    FloatEnvironment() { std::fesetenv(FE_DFL_ENV); }
+    ~FloatEnvironment() override { std::fesetenv(FE_DFL_ENV); }
+
+    static int raised() { return std::fetestexcept(FE_ALL_EXCEPT); }
+};
+}  // namespace
+
+TEST_F(FloatEnvironment, FlagsRaisedWithinVanish)
+{
+    {
+        const DefaultFloats floats;
+        divideByZero();
+    }
+    EXPECT_EQ(raised(), 0);
+    {
+        const DefaultFloats floats;
+        divideLongByZero();
+    }
+    EXPECT_EQ(raised(), 0);
+}
+
+TEST_F(FloatEnvironment, FlagsRaisedBeforeStay)
+{
+    for (void (*const divide)() : {divideByZero, divideLongByZero})
+    {
+        std::fesetenv(FE_DFL_ENV);
+        divide();
+        const int before = raised();
+        EXPECT_NE(before & FE_DIVBYZERO, 0);
+        {
+            const DefaultFloats floats;
+            g_result = g_one / 3;
+        }
+        EXPECT_EQ(raised(), before);
+    }
+}
+
+TEST_F(FloatEnvironment, FlagsOfTheAppsCodeWithinStay)
+{
+    for (void (*const divide)() : {divideByZero, divideLongByZero})
+    {
+        std::fesetenv(FE_DFL_ENV);
+        {
+            const DefaultFloats floats;
+            g_result = g_one / 3;
+            const CallersFloats callers;
+            EXPECT_EQ(raised(), 0) << "the app sees none of Drape's";
+            divide();
+        }
+        EXPECT_EQ(raised(), FE_DIVBYZERO);
+    }
+}
+
+TEST_F(FloatEnvironment, ModesReturn)
+{
+    for (const int mode : {FE_TONEAREST, FE_UPWARD})
+    {
+        std::fesetround(mode);
+        {
+            const DefaultFloats floats;
+            EXPECT_EQ(std::fegetround(), FE_TONEAREST);
+            {
+                const CallersFloats callers;
+                EXPECT_EQ(std::fegetround(), mode);
+            }
+            EXPECT_EQ(std::fegetround(), FE_TONEAREST);
+        }
+        EXPECT_EQ(std::fegetround(), mode);
+    }
+}
+
+// The app's code may change its modes for good.
+TEST_F(FloatEnvironment, ModesThatTheAppsCodeSetsWithinStay)
+{
+    for (const int mode : {FE_UPWARD, FE_TONEAREST})
+    {
+        {
+            const DefaultFloats floats;
+            {
+                const CallersFloats callers;
+                std::fesetround(mode);
+            }
+            EXPECT_EQ(std::fegetround(), FE_TONEAREST);
+        }
+        EXPECT_EQ(std::fegetround(), mode);
+    }
+}
+
+#if defined(__x86_64__) || defined(_M_X64)
 namespace
 {
 // The bits of MXCSR that flush results and inputs to zero.
@@ -43,7 +152,7 @@ private:
     unsigned m_before;
 };
 
-TEST(FloatEnvironment, IsTheDefaultWithinAndTheCallersAfterwards)
+TEST(FlushedNumbers, IsTheDefaultWithinAndTheCallersAfterwards)
 {
     const OddFloats odd;
     const unsigned before = _mm_getcsr();
@@ -59,7 +168,7 @@ TEST(FloatEnvironment, IsTheDefaultWithinAndTheCallersAfterwards)
     EXPECT_EQ(_mm_getcsr() & 0xffc0u, before & 0xffc0u);
 }
 
-TEST(FloatEnvironment, CodeThatIsCalledHasTheCallers)
+TEST(FlushedNumbers, CodeThatIsCalledHasTheCallers)
 {
     const OddFloats odd;
     const DefaultFloats defaults;
@@ -70,5 +179,5 @@ TEST(FloatEnvironment, CodeThatIsCalledHasTheCallers)
     EXPECT_TRUE(keepsSubnormals());
 }
 }  // namespace
-}  // namespace drape::test
 #endif
+}  // namespace drape::test

@@ -11,13 +11,23 @@
 #include <vector>
 
 #include "bullet_plugin/core/threads/thread_team.h"
+#include "tests/support/job_pool.h"
 
 namespace drape::test
 {
 namespace
 {
-class ThreadTeamTest : public testing::TestWithParam<unsigned>
+struct TeamCase
 {
+    unsigned m_size;
+    bool m_ofApp;  // jobs run on a pool of the app's
+};
+
+class ThreadTeamTest : public testing::TestWithParam<TeamCase>
+{
+protected:
+    JobPool m_pool{GetParam().m_ofApp ? 3u : 0u};
+    ThreadTeam team{GetParam().m_size, GetParam().m_ofApp ? m_pool.function() : ParallelFor()};
 };
 
 void expectEachOnce(ThreadTeam& team, std::size_t count)
@@ -31,16 +41,15 @@ void expectEachOnce(ThreadTeam& team, std::size_t count)
 
 TEST_P(ThreadTeamTest, RunsEachItemOnce)
 {
-    ThreadTeam team(GetParam());
-    EXPECT_EQ(team.size(), GetParam());
+    EXPECT_EQ(team.size(), GetParam().m_size);
     for (const std::size_t count : {0u, 1u, 2u, 3u, 7u, 8u, 9u, 1000u, 10007u})
         ASSERT_NO_FATAL_FAILURE(expectEachOnce(team, count));
+    EXPECT_EQ(m_pool.calls() > 0, GetParam().m_ofApp && team.size() > 1) << "one thread works alone";
 }
 
 // Threads that still look for the items of one job while the next one is offered.
 TEST_P(ThreadTeamTest, KeepsJobsApart)
 {
-    ThreadTeam team(GetParam());
     std::size_t wanted = 0;
     std::atomic<std::size_t> sum{0};
     for (std::size_t job = 0; job < 20000; ++job)
@@ -55,7 +64,6 @@ TEST_P(ThreadTeamTest, KeepsJobsApart)
 
 TEST_P(ThreadTeamTest, WakesThreadsThatSleep)
 {
-    ThreadTeam team(GetParam());
     for (int i = 0; i < 20; ++i)
     {
         std::this_thread::sleep_for(std::chrono::microseconds(5 * ThreadTeam::kAwakeMicroseconds));
@@ -66,7 +74,6 @@ TEST_P(ThreadTeamTest, WakesThreadsThatSleep)
 // Results of a job are visible to the caller and to the threads that run the next job.
 TEST_P(ThreadTeamTest, ResultsOfJobsAreVisibleToAllThreads)
 {
-    ThreadTeam team(GetParam());
     constexpr std::size_t kItems = 97;
     std::vector<std::size_t> values(kItems, 0), next(kItems, 0);
     for (std::size_t job = 0; job < 2000; ++job)
@@ -80,7 +87,6 @@ TEST_P(ThreadTeamTest, ResultsOfJobsAreVisibleToAllThreads)
 
 TEST_P(ThreadTeamTest, ReportsFailuresToTheCaller)
 {
-    ThreadTeam team(GetParam());
     for (int i = 0; i < 100; ++i)
     {
         const auto job = [](std::size_t item)
@@ -102,7 +108,6 @@ TEST_P(ThreadTeamTest, ReportsFailuresToTheCaller)
 
 TEST_P(ThreadTeamTest, SurvivesFailuresOfManyItems)
 {
-    ThreadTeam team(GetParam());
     for (int i = 0; i < 100; ++i)
     {
         EXPECT_THROW(team.run(64, [](std::size_t) { throw std::runtime_error("each"); }), std::runtime_error);
@@ -113,7 +118,6 @@ TEST_P(ThreadTeamTest, SurvivesFailuresOfManyItems)
 // Items round as the caller does, whoever runs them and whatever the caller did before.
 TEST_P(ThreadTeamTest, ThreadsRoundLikeTheCaller)
 {
-    ThreadTeam team(GetParam());
     for (const int mode : {FE_TONEAREST, FE_UPWARD, FE_DOWNWARD, FE_TONEAREST})
     {
         std::fesetround(mode);
@@ -134,6 +138,55 @@ TEST(ThreadTeam, HasADefaultSize)
     EXPECT_LE(team.size(), ThreadTeam::kMostByDefault);
 }
 
-INSTANTIATE_TEST_SUITE_P(Sizes, ThreadTeamTest, testing::Values(1u, 2u, 3u, 16u),
-                         [](const auto& size) { return std::to_string(size.param); });
+// The caller does what a function of the app's leaves undone.
+TEST(ThreadTeam, DoesTheJobsThatTheAppLeavesOut)
+{
+    const ParallelFor functions[] = {[](std::size_t, const std::function<void(std::size_t)>&) {},
+                                     [](std::size_t, const std::function<void(std::size_t)>& job) { job(1); },
+                                     [](std::size_t count, const std::function<void(std::size_t)>& job)
+                                     {
+                                         job(count - 1);
+                                         throw std::runtime_error("the app's");
+                                     },
+                                     [](std::size_t count, const std::function<void(std::size_t)>& job)
+                                     {
+                                         for (std::size_t i = 2 * count; i-- > 0;)
+                                             job(i % count);
+                                     }};
+    for (const ParallelFor& function : functions)
+    {
+        ThreadTeam team(4, function);
+        for (const std::size_t count : {2u, 3u, 1000u})
+            ASSERT_NO_FATAL_FAILURE(expectEachOnce(team, count));
+    }
+}
+
+// Threads of the app get their floating-point environment back.
+TEST(ThreadTeam, LeavesTheAppsThreadsTheirRounding)
+{
+    int roundingBefore = -1, roundingWithin = -1, roundingAfter = -1;
+    ThreadTeam team(2,
+                    [&](std::size_t, const std::function<void(std::size_t)>& job)
+                    {
+                        std::thread(
+                            [&]
+                            {
+                                std::fesetround(FE_UPWARD);
+                                roundingBefore = std::fegetround();
+                                job(0);
+                                roundingAfter = std::fegetround();
+                            })
+                            .join();
+                    });
+    team.run(8, [&](std::size_t) { roundingWithin = std::fegetround(); });
+    EXPECT_EQ(roundingBefore, FE_UPWARD);
+    EXPECT_EQ(roundingWithin, FE_TONEAREST);
+    EXPECT_EQ(roundingAfter, FE_UPWARD);
+}
+
+INSTANTIATE_TEST_SUITE_P(Sizes, ThreadTeamTest,
+                         testing::Values(TeamCase{1, false}, TeamCase{2, false}, TeamCase{3, false},
+                                         TeamCase{16, false}, TeamCase{1, true}, TeamCase{2, true}, TeamCase{16, true}),
+                         [](const auto& team)
+                         { return std::string(team.param.m_ofApp ? "App" : "") + std::to_string(team.param.m_size); });
 }  // namespace drape::test

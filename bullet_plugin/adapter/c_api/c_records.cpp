@@ -17,8 +17,8 @@ constexpr std::size_t kSums = 0 DRAPE_STATISTICS_SUMS(DRAPE_ONE);
 
 // A field that only one side has fails here: add it to the list, to the record of drape/c_api.h, and to the Python
 // module's class if it has one.
-static_assert(fieldCount<Settings>() == kSettings + 1, "besides the list, Settings has m_log");
-static_assert(fieldCount<DrapeSettings>() == kSettings + 2, "besides the list, DrapeSettings has m_log and m_logUser");
+static_assert(fieldCount<Settings>() == kSettings + 2, "besides the list, Settings has m_log and m_parallelFor");
+static_assert(fieldCount<DrapeSettings>() == kSettings + 4, "besides the list, two functions with their user pointers");
 static_assert(fieldCount<DeviceInfo>() == kDeviceInfo && fieldCount<DrapeDeviceInfo>() == kDeviceInfo, "");
 static_assert(fieldCount<DeviceReport>() == kDeviceReport + 1, "besides the list, DeviceReport has m_device");
 static_assert(fieldCount<DrapeDeviceReport>() == kDeviceReport + 1, "besides the list, it has m_device");
@@ -27,6 +27,12 @@ static_assert(fieldCount<StepCounts>() + fieldCount<StepParts>() + fieldCount<St
 static_assert(fieldCount<DrapeStatistics>() == kStatistics + kSums, "");
 static_assert(fieldCount<MeshPairs>() == 6 && fieldCount<DrapeMeshPairs>() == 8, "C has the lengths of two lists, too");
 static_assert(fieldCount<MeshMotion>() == 7 && fieldCount<DrapeMeshMotion>() == 8, "C has a list's length, too");
+
+// Runs a job for C: a function and its context.
+void runJob(size_t index, void* job)
+{
+    (*static_cast<const std::function<void(std::size_t)>*>(job))(index);
+}
 
 // Constants of C and enumerators have the same numbers.
 #define DRAPE_COMPARE(field, constant, enumerator, name) \
@@ -55,6 +61,11 @@ Settings settingsOf(const DrapeSettings* settings)
     const DrapeLog log = from.m_log;
     void* const user = from.m_logUser;
     if (log) to.m_log = [log, user](const char* line) { log(line, user); };
+    const DrapeParallelFor run = from.m_parallelFor;
+    void* const system = from.m_parallelForUser;
+    if (run)
+        to.m_parallelFor = [run, system](std::size_t count, const std::function<void(std::size_t)>& job)
+        { run(count, runJob, const_cast<std::function<void(std::size_t)>*>(&job), system); };
     return to;
 }
 

@@ -37,10 +37,11 @@ void SoftBodySolver::predictMotion(btScalar dt)
     m_work->m_parts = StepParts();
     guarded([&] { m_work->beginStep(dt, obstacles); }, failed);
     if (!m_state->ready()) return btDefaultSoftBodySolver::predictMotion(dt);
-    Stopwatch watch;
+    Stopwatch watch(m_work->hasBodies());
     m_work->predict(m_softBodySet, dt);
     m_work->m_parts.m_predictMs = watch.lapMs();
-    guarded([&] { coverMotions(*m_state, m_work->m_taken, obstacles, m_state->threads()); }, failed);
+    const auto cover = [&] { coverMotions(*m_state, m_work->m_taken, obstacles, m_state->threads()); };
+    if (!obstacles.empty()) guarded(cover, failed);
     m_work->m_parts.m_mirrorMs += watch.lapMs();
 }
 
@@ -74,9 +75,10 @@ void SoftBodySolver::processCollision(btSoftBody* body, btSoftBody* other)
 
 void SoftBodySolver::updateSoftBodies()
 {
-    Stopwatch watch;
+    Stopwatch watch(m_softBodySet.size() > 0);
     // Bullet's function does the same on this thread if there is no state.
     if (!m_work) return btDefaultSoftBodySolver::updateSoftBodies();
+    if (m_softBodySet.size() == 0) return;
     BT_PROFILE("Drape normals");
     const ThreadWatch::Call call = m_state->beginCall();
     const auto isOnHost = [this](const btSoftBody& body)

@@ -130,7 +130,7 @@ void SoftBodySolver::Work::beginStep(btScalar dt, std::vector<StepObstacle>& obs
     m_state.beginStep(&m_owner, m_bodies);
     if (!m_state.ready()) return listPredicted();
     m_state.m_kept.forgetRemoved(&m_owner, m_bodies);
-    Stopwatch watch;
+    Stopwatch watch(hasBodies());
     KinematicMotions& motions = m_state.motionsOf(&m_owner);
     listTaken();
     motions.beginStep(dt, [this](const btCollisionObject& object, const btTransform& map, btScalar slack)

@@ -117,7 +117,7 @@ void SoftBodySolver::Work::detect()
     CollisionStep& step = *m_step;
     StepStatistics& statistics = m_state.m_statistics;
     if (m_usage.hasFallen(elementsOf(statistics))) giveBackRoom(m_state);
-    Stopwatch watch;
+    Stopwatch watch(hasBodies());
     {
         BT_PROFILE("Drape mirrors");
         step.begin(takeNotes(), [this](btSoftBody& body) { bringToHost(body); });
@@ -255,7 +255,7 @@ void SoftBodySolver::Work::solveBodies()
     StepParts& parts = m_parts;
     m_bulletLinks.clear();
     m_solved.assign(static_cast<std::size_t>(m_bodies.size()), 0);
-    Stopwatch watch;
+    Stopwatch watch(hasBodies());
     takeSubsteps(m_bodies);
     takeBulletsBodies(m_bodies);
     ClothRows* const rows = findMeetings();
@@ -326,7 +326,7 @@ void SoftBodySolver::Work::solveStep()
 {
     StepParts& parts = m_parts;
     const std::size_t waits = m_state.ready() ? m_state.pipeline().deviceWaits() : 0;
-    Stopwatch watch;
+    Stopwatch watch(hasBodies());
     m_begun = false;
     m_onDevice = 0;
     m_stage = nullptr;

@@ -99,6 +99,9 @@ struct SoftBodySolver::Work
     void checkPaths(CollisionStep& step);
     void letSleep();
 
+    // Returns false in a world without soft bodies, whose step must cost nothing: then no clock is read.
+    bool hasBodies() const { return m_bodies.size() > 0; }
+
     // Prediction.
     void predict(const Bodies& bodies, btScalar dt);
     template <class Predict>

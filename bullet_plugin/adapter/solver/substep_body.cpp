@@ -98,12 +98,20 @@ void SubstepBody::reserve(const btSoftBody& body)
 void SubstepBody::beforePrediction(const btSoftBody& body, ThreadTeam* threads)
 {
     if (m_velocities.size() != nodeCount(body)) return;
+    std::atomic<bool> hasForces{body.m_cfg.kVC > 0 || body.m_cfg.kPR != 0};
     const auto record = [&](std::size_t first, std::size_t last)
     {
+        bool any = false;
         for (std::size_t i = first; i < last; ++i)
-            m_velocities[i] = body.m_nodes[static_cast<int>(i)].m_v;
+        {
+            const btSoftBody::Node& node = body.m_nodes[static_cast<int>(i)];
+            m_velocities[i] = node.m_v;
+            any = any || !node.m_f.isZero();
+        }
+        if (any) hasForces = true;
     };
     forRanges(m_velocities.size(), threads, record);
+    m_hasForces = hasForces;
 }
 
 void SubstepBody::afterPrediction(btSoftBody& body, ThreadTeam* threads)
@@ -111,6 +119,7 @@ void SubstepBody::afterPrediction(btSoftBody& body, ThreadTeam* threads)
     if (!(body.m_sst.sdt > 0) || m_velocities.size() != nodeCount(body)) return;
     const btScalar shift = pathShift(body), supportShift = SubstepBody::supportShift(body);
     const btScalar perSecond = body.m_sst.isdt;
+    const btVector3 fall = body.m_worldInfo->m_gravity * body.m_sst.sdt;
     if (!m_isSupported) std::fill(m_supports.begin(), m_supports.end(), vec3(0, 0, 0));
     m_isSupported = false;
     m_isPredicted = true;
@@ -120,6 +129,9 @@ void SubstepBody::afterPrediction(btSoftBody& body, ThreadTeam* threads)
         for (std::size_t i = first; i < last; ++i)
         {
             btSoftBody::Node& node = body.m_nodes[static_cast<int>(i)];
+            // All but gravity acts at the step's start, as with Bullet. A force of volume, pressure or a spring depends
+            // on the positions; spread over the substeps it would add energy in every step.
+            if (m_hasForces && node.m_im > 0) m_velocities[i] = node.m_v - fall;
             const btVector3 acceleration = (node.m_v - m_velocities[i]) * perSecond;
             m_accelerations[i] = vec3Of(acceleration);
             const btVector3 moved = acceleration * shift + vectorOf(m_supports[i]) * supportShift;

@@ -1,7 +1,8 @@
 // One soft body whose motion and links the core solves, in substeps of the step (core/solver/host/substeps.h). Bullet
 // predicts; the core replaces btSoftBody::solveConstraints().
 //
-// Forces and velocities are Bullet's: what predictMotion() adds to a velocity is the acceleration of the step. Links
+// Forces and velocities are Bullet's. What predictMotion() adds to a velocity is the acceleration of the step. With
+// forces of the app, volume or pressure that is gravity's; those forces change the velocity at the step's start. Links
 // keep the stiffness that Bullet's iterations give them (core/solver/link_strength.h). The body's own numbers are read
 // in every step, so changes between steps count in the next one. Cost: linear in nodes and links.
 #pragma once
@@ -58,7 +59,7 @@ public:
     const std::vector<Vec3>& supports() const { return m_supports; }
     // Takes these from a step of the device; call before the prediction.
     void setSupports(const std::vector<Vec3>& supports);
-    // Returns the velocities before the prediction, m/s.
+    // Returns the velocities before the prediction, m/s; with forces of the app, volume or pressure those after them.
     const std::vector<btVector3>& velocities() const { return m_velocities; }
     // Returns whether the body has the nodes of the prediction.
     bool fits(const btSoftBody& body) const;
@@ -117,7 +118,8 @@ private:
 
     bool m_isPredicted = false;
     bool m_isOnDevice = false;            // the device predicts the nodes
-    std::vector<btVector3> m_velocities;  // before the prediction, m/s
+    bool m_hasForces = false;             // the app's, of volume or of pressure
+    std::vector<btVector3> m_velocities;  // before the prediction, m/s; with m_hasForces with what they add
     std::vector<Vec3> m_accelerations;    // m/s², constant in the step
     std::vector<Vec3> m_supports;         // m/s², of the step before, then of this one
     bool m_isSupported = false;           // m_supports is of the step before

@@ -92,7 +92,8 @@ bool BackendSelector::beginStart(Error& error)
     try
     {
         Settings settings = m_settings;
-        settings.m_log = nullptr;  // the app's function stays on the app's threads
+        settings.m_log = nullptr;  // the app's functions stay on the app's threads
+        settings.m_parallelFor = nullptr;
         m_start = std::make_unique<Start>(std::move(settings));
         m_report.m_isStarting = true;
         m_report.m_reason = "the host, while a device is being prepared";

@@ -50,7 +50,7 @@ std::unique_ptr<Pipeline> Pipeline::create(const Settings& settings, Error& erro
 {
     error = Error();
     if (!checkSettings(settings, error)) return nullptr;
-    auto threads = std::make_shared<ThreadTeam>(settings.m_threads);
+    auto threads = std::make_shared<ThreadTeam>(settings.m_threads, settings.m_parallelFor);
     auto implementation = std::make_unique<Implementation>(settings, std::move(threads));
     if (!implementation->m_backends.open(error)) return nullptr;
     return std::unique_ptr<Pipeline>(new Pipeline(std::move(implementation)));

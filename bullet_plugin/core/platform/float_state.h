@@ -51,3 +51,52 @@ inline void setDefaultFloatState()
 }
 }  // namespace drape
 #endif
+
+// The registers of an x86-64 processor, for code that cannot afford <cfenv>. On others modesAreDefault() is false.
+namespace drape
+{
+#if defined(__GNUC__) && defined(__x86_64__)
+// The registers' flags of exceptions, and their modes by default.
+constexpr unsigned kExceptionFlags = 0x3f, kDefaultSseModes = 0x1f80;
+constexpr unsigned short kDefaultX87Control = 0x37f;
+
+inline unsigned sseRegister() noexcept
+{
+    return __builtin_ia32_stmxcsr();
+}
+
+inline void setSseRegister(unsigned value) noexcept
+{
+    if (value != sseRegister()) __builtin_ia32_ldmxcsr(value);
+}
+
+inline unsigned short x87Status() noexcept
+{
+    unsigned short status;
+    __asm__ volatile("fnstsw %0" : "=m"(status));
+    return status;
+}
+
+inline bool modesAreDefault() noexcept
+{
+    unsigned short control;
+    __asm__ volatile("fnstcw %0" : "=m"(control));
+    return (sseRegister() & ~kExceptionFlags) == kDefaultSseModes && control == kDefaultX87Control;
+}
+#else
+constexpr unsigned kExceptionFlags = 0;
+inline unsigned sseRegister() noexcept
+{
+    return 0;
+}
+inline void setSseRegister(unsigned) noexcept {}
+inline unsigned short x87Status() noexcept
+{
+    return 0;
+}
+inline bool modesAreDefault() noexcept
+{
+    return false;
+}
+#endif
+}  // namespace drape

@@ -8,6 +8,7 @@
 #include <limits>
 #include <utility>
 
+#include "bullet_plugin/core/float_environment.h"
 #include "bullet_plugin/core/platform/compiler.h"
 #include "bullet_plugin/core/platform/float_state.h"
 #include "bullet_plugin/core/platform/platform.h"
@@ -25,7 +26,10 @@ unsigned ThreadTeam::sizeFor(unsigned threads)
     return threads > 0 ? threads : std::min(availableCores(), kMostByDefault);
 }
 
-ThreadTeam::ThreadTeam(unsigned threads) : m_size(sizeFor(threads)), m_stretches(new Stretch[m_size]) {}
+ThreadTeam::ThreadTeam(unsigned threads, ParallelFor parallelFor)
+    : m_size(sizeFor(threads)), m_parallelFor(std::move(parallelFor)), m_stretches(new Stretch[m_size])
+{
+}
 
 ThreadTeam::~ThreadTeam()
 {
@@ -66,8 +70,11 @@ void ThreadTeam::keepOffCallersCore()
 
 void ThreadTeam::share(std::size_t count, Call call, const void* context)
 {
-    start();
-    keepOffCallersCore();
+    if (!m_parallelFor)
+    {
+        start();
+        keepOffCallersCore();
+    }
     m_call = call;
     m_context = context;
     saveFloatState(m_environment);
@@ -82,8 +89,11 @@ void ThreadTeam::share(std::size_t count, Call call, const void* context)
         first = stretch.m_end;
     }
     m_job.store(job);
-    wakeOne();
-    workOn(0);
+    if (m_parallelFor)
+        handToApp();
+    else
+        wakeOne();
+    workOn(0, false);
     for (int looks = 1; m_unfinished.load(std::memory_order_acquire) > 0; ++looks)
     {
         if (looks % kLooksTogether == 0)
@@ -94,6 +104,29 @@ void ThreadTeam::share(std::size_t count, Call call, const void* context)
     if (!m_failed.load(std::memory_order_relaxed)) return;
     m_failed = false;
     std::rethrow_exception(std::exchange(m_failure, nullptr));
+}
+
+// Runs the app's function in the app's floating-point environment: it may run other jobs on this thread meanwhile.
+void ThreadTeam::handToApp()
+{
+    const CallersFloats floats;
+    try
+    {
+        m_parallelFor(m_size, m_appJob);
+    }
+    catch (...)
+    {
+        // The caller claims what is left.
+    }
+}
+
+// Runs on any thread, perhaps after others have claimed everything.
+void ThreadTeam::workForApp(std::size_t thread)
+{
+    std::fenv_t apps;
+    saveFloatState(apps);
+    workOn(static_cast<unsigned>(thread % m_size), true);
+    restoreFloatState(apps);
 }
 
 // Wakes one sleeping thread, which then wakes two others: waking takes the caller up to 50 us on a virtual machine.
@@ -107,10 +140,10 @@ void ThreadTeam::wakeOne()
     m_offered.notify_one();
 }
 
-void ThreadTeam::workOn(unsigned thread)
+void ThreadTeam::workOn(unsigned thread, bool helps)
 {
     for (unsigned i = 0; i < m_size; ++i)
-        while (workOnce(m_stretches[(thread + i) % m_size], thread > 0))
+        while (workOnce(m_stretches[(thread + i) % m_size], helps))
         {
         }
 }
@@ -149,7 +182,7 @@ void ThreadTeam::work(unsigned thread)
     while (awaitJob(done))
     {
         done = m_job.load();
-        workOn(thread);
+        workOn(thread, true);
     }
 }
 

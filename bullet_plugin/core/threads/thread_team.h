@@ -5,6 +5,9 @@
 // thread delays the caller only if it loses its core within an item. Results must not depend on the thread or the
 // order. All threads round as the caller does.
 //
+// With a job system of the app's, its function runs one job for each thread of the team; each job claims items in the
+// same way, and the caller claims what they leave.
+//
 // Errors: an item's exception reaches the caller once all begun items have ended; the rest are skipped. run() belongs
 // to one thread at a time, and no item calls it. A child made by fork() must not use the team.
 //
@@ -17,10 +20,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <exception>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <thread>
 #include <vector>
+
+#include "drape/settings.h"
 
 namespace drape
 {
@@ -33,7 +39,8 @@ public:
     static constexpr unsigned kMostByDefault = 8;
 
     // threads: includes the caller. 0: one per core that the process may use, at most kMostByDefault.
-    explicit ThreadTeam(unsigned threads);
+    // parallelFor: the app's job system (Settings::m_parallelFor); the team starts no threads then.
+    explicit ThreadTeam(unsigned threads, ParallelFor parallelFor = nullptr);
     // Returns the team's size for the setting.
     static unsigned sizeFor(unsigned threads);
     ~ThreadTeam();
@@ -69,15 +76,19 @@ private:
 
     void share(std::size_t count, Call call, const void* context);
     void start();
+    void handToApp();
+    void workForApp(std::size_t thread);
     void keepOffCallersCore();
     void work(unsigned thread);
-    void workOn(unsigned thread);
+    void workOn(unsigned thread, bool helps);
     bool workOnce(Stretch& stretch, bool helps);
     void runItem(std::size_t item);
     bool awaitJob(std::uint32_t done);
     void wakeOne();
 
     const unsigned m_size;
+    const ParallelFor m_parallelFor;
+    const std::function<void(std::size_t)> m_appJob = [this](std::size_t thread) { workForApp(thread); };
     std::vector<std::thread> m_threads;
     bool m_started = false;
     int m_callersCore = -1;  // the threads keep off it

@@ -112,27 +112,36 @@ enum
 // with the handle that calls it.
 typedef void (*DrapeLog)(const char* line, void* user);
 
+// One job of Drape's: call it with an index and the context that came with it.
+typedef void (*DrapeJob)(size_t index, void* context);
+
+// Calls job(i, context) once for each i below `count`, in any order and on any threads, and returns when all have
+// returned; see Settings::m_parallelFor.
+typedef void (*DrapeParallelFor)(size_t count, DrapeJob job, void* context, void* user);
+
 // Choices before Drape starts. Fields, units, ranges and defaults are those of Settings (drape/settings.h).
 typedef struct DrapeSettings
 {
-    int m_backend;              // DRAPE_BACKEND_…
-    const char* m_device;       // part of a device's or platform's name, or "host"; "" or null for the default
-    double m_crossover;         // expected triangle pairs from which the device is used; negative: measured
-    float m_activation;         // reach of contacts beyond the thickness, as a fraction of it, 0 to 4
-    int m_mode;                 // DRAPE_MODE_…
-    int m_solver;               // DRAPE_SOLVER_…
-    int m_solverPlace;          // DRAPE_SOLVER_PLACE_…
-    int m_dynamicConvex;        // DRAPE_SHAPE_CONTACTS_…, with convex shapes of dynamic bodies
-    int m_staticConvex;         // DRAPE_SHAPE_CONTACTS_…, with convex shapes of other bodies
-    int m_surfaces;             // DRAPE_SHAPE_CONTACTS_…, with planes and height fields
-    int m_clothSleeps;          // 1: cloth at rest falls asleep
-    unsigned m_threads;         // number of threads, 0 to 64; 0: available cores, 8 at most
-    size_t m_candidateLimit;    // largest number of candidates in a step or query
-    size_t m_contactLimit;      // largest number of contacts in a step, or of answers of a query
-    int m_profileKernels;       // 1: the device times every kernel launch
-    const char* m_cacheFolder;  // folder for compiled kernels; "none": no cache; "" or null for the default
-    DrapeLog m_log;             // receives problems of worlds; null: nobody does
-    void* m_logUser;            // passed to m_log
+    int m_backend;                   // DRAPE_BACKEND_…
+    const char* m_device;            // part of a device's or platform's name, or "host"; "" or null for the default
+    double m_crossover;              // expected triangle pairs from which the device is used; negative: measured
+    float m_activation;              // reach of contacts beyond the thickness, as a fraction of it, 0 to 4
+    int m_mode;                      // DRAPE_MODE_…
+    int m_solver;                    // DRAPE_SOLVER_…
+    int m_solverPlace;               // DRAPE_SOLVER_PLACE_…
+    int m_dynamicConvex;             // DRAPE_SHAPE_CONTACTS_…, with convex shapes of dynamic bodies
+    int m_staticConvex;              // DRAPE_SHAPE_CONTACTS_…, with convex shapes of other bodies
+    int m_surfaces;                  // DRAPE_SHAPE_CONTACTS_…, with planes and height fields
+    int m_clothSleeps;               // 1: cloth at rest falls asleep
+    unsigned m_threads;              // number of threads, 0 to 64; 0: available cores, 8 at most
+    size_t m_candidateLimit;         // largest number of candidates in a step or query
+    size_t m_contactLimit;           // largest number of contacts in a step, or of answers of a query
+    int m_profileKernels;            // 1: the device times every kernel launch
+    const char* m_cacheFolder;       // folder for compiled kernels; "none": no cache; "" or null for the default
+    DrapeLog m_log;                  // receives problems of worlds; null: nobody does
+    void* m_logUser;                 // passed to m_log
+    DrapeParallelFor m_parallelFor;  // runs Drape's jobs on the app's job system; null: threads of Drape's own
+    void* m_parallelForUser;         // passed to m_parallelFor
 } DrapeSettings;
 
 // An OpenCL device, or the host. Fields are those of DeviceInfo (drape/report.h).

@@ -62,6 +62,9 @@ enum class ShapeContacts
     Bullet  // Bullet, which holds nodes alone, so that edges and fast or heavy bodies may pass
 };
 
+// Runs job(i) once for each i below `count`, in any order and on any threads, and returns when all have returned.
+using ParallelFor = std::function<void(std::size_t count, const std::function<void(std::size_t)>& job)>;
+
 // Holds the choices of an app before Drape starts.
 struct Settings
 {
@@ -118,6 +121,14 @@ struct Settings
     // run the host back end. Range 0 to 64. 0 means the number of available cores, 8 at most; 1 means the caller's
     // thread alone. Results do not depend on it.
     unsigned m_threads = 0;
+
+    // Runs Drape's jobs on the app's job system instead of Drape's own threads, which then never start. Empty by
+    // default. Called many times a step by the thread that calls the plugin, with at most m_threads jobs of
+    // microseconds to milliseconds. Any threads may run the jobs, at any time until the function returns; the calling
+    // thread may be one of them. Meanwhile it must not call the plugin. Jobs never wait for one another, throw or call
+    // this function. If the function throws, or runs some of the jobs only, the calling thread does the rest and the
+    // exception is dropped. The measurement of m_crossover does not use it. Results do not depend on it.
+    ParallelFor m_parallelFor;
 
     // Largest number of candidates in a step, up to 20 bytes each; 2^28 at most. A step that exceeds it leaves out the
     // cloths with the most candidates and reports kStepClothsLeftOut. Queries of meshes test as many pairs.
