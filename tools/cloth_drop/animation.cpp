@@ -110,12 +110,13 @@ int animationRows(const std::vector<const Recording*>& runs)
     return static_cast<int>(framesOf(runs).size() * runs.size()) * kSize.m_height;
 }
 
-bool writeAnimation(const std::string& path, const std::vector<const Recording*>& runs, const TriangleMesh& obstacle,
+bool writeAnimation(const std::string& path, const std::vector<const Recording*>& runs, const ObstacleAt& obstacleAt,
                     const PictureHooks& hooks, std::string& error)
 {
     const std::vector<std::size_t> frames = framesOf(runs);
     const double frameMs = 1000 * runs.front()->m_frameTime;
-    const View view = viewOf(clothAt(*runs.front(), frames.back(), obstacle.triangleCount()), obstacle);
+    const TriangleMesh last = obstacleAt(frames.back());
+    const View view = viewOf(clothAt(*runs.front(), frames.back(), last.triangleCount()), last);
     AnimationEncoder encoder;
     Image image(0, 0);
     int rowsBefore = 0;
@@ -126,6 +127,7 @@ bool writeAnimation(const std::string& path, const std::vector<const Recording*>
     };
     for (const std::size_t frame : frames)
     {
+        const TriangleMesh obstacle = obstacleAt(frame);
         const auto panels = panelsAt(runs, frame, obstacle.triangleCount());
         if (!drawPicture(panels, obstacle, view, kSize, own, image, error)) break;
         rowsBefore += static_cast<int>(panels.size()) * kSize.m_height;
