@@ -23,5 +23,5 @@ set(full_suites "BunnyDrop|SettledCloth|Outputs|CpuKernelsTest|RopesDropped|Self
   "ContactModesTest|Needles|SelfStepTest|SelfOracle|LooseEdges|Truth|Check|AnimatedMeshes|StressRows|SkipsTest"
   "BackendMove|FeatureCull|ContactsOracle|HostDeviceTest|Starts|IterationsOfBullet|Memory|BadInputTest"
   "DiscretePlate|PatchCullTest|KinematicPlate|ThreadsTest|OutOfMemory|Soak|Sheets|FastDropping|Prepared"
-  "BuildLogTest|SelfCollision|ClothGuard|ClothScenes")
+  "BuildLogTest|SelfCollision|ClothGuard|ClothScenes|BuiltInScenes")
 string(JOIN "|" full_suites ${full_suites})

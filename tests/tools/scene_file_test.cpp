@@ -101,8 +101,9 @@ INSTANTIATE_TEST_SUITE_P(Scenes, BuiltInScenes,
 
 TEST_F(SceneFiles, TheDropIsAScene)
 {
-    const std::vector<std::string> drop = {"--cloth",    "9x7", "--obstacle", "torus",   "--steps", "20", "--drop-speed",
-                                           "1.5",        "--layers", "3",     "--self",  "--drop-height", "0.05"};
+    const std::vector<std::string> drop = {"--cloth", "9x7",           "--obstacle", "torus",    "--steps",
+                                           "20",      "--drop-speed",  "1.5",        "--layers", "3",
+                                           "--self",  "--drop-height", "0.05"};
     std::vector<std::string> writing = drop;
     writing.insert(writing.end(), {"--write-scene", path("drop.json")});
     ASSERT_EQ(run(writing).m_exitCode, 0);
@@ -121,14 +122,14 @@ TEST_F(SceneFiles, AWrittenSceneIsWrittenTheSameAgain)
 
 TEST_F(SceneFiles, PinnedNodesAndObstaclesGoWhereTheMotionsSay)
 {
-    const SceneFile file = read(sceneWith(
-        sheetWith(R"(, "position": [0, 2, 0], "pins": [
+    const SceneFile file =
+        read(sceneWith(sheetWith(R"(, "position": [0, 2, 0], "pins": [
             {"corners": ["x_min_z_max"]},
             {"edges": ["x_max"], "motion": {"velocity": [0, 0, 3], "from": 0.5}},
             {"nodes": [1], "motion": {"keyframes": [{"time": 1, "shift": [0, 1, 0]}]}},
             {"box": {"min": [-0.6, 1, -0.6], "max": [-0.4, 3, 0.1]},
              "motion": {"angular_velocity": [0, 1.5707963267948966, 0], "centre": [-0.5, 2, 0]}}])"),
-        R"(, "obstacles": [{"shape": {"type": "box", "size": [1, 1, 1]}, "position": [5, 0, 0],
+                       R"(, "obstacles": [{"shape": {"type": "box", "size": [1, 1, 1]}, "position": [5, 0, 0],
              "rotation": {"axis": [0, 2, 0], "angle": 1}, "motion": {"velocity": [1, 0, 0]}}])"));
     ASSERT_EQ(file.m_scene.m_cloths[0].m_pins.size(), 4u);
     EXPECT_EQ(file.m_scene.m_cloths[0].m_pins[0].m_nodes, std::vector<int>{6});
@@ -203,12 +204,14 @@ TEST_F(SceneFiles, MistakesAreNamedWithTheirPath)
     expectMistake(sceneWith(sheetWith(R"(, "pins": [{"nodes": [2]}, {"edges": ["x_max"]}])")),
                   {"/cloths/0/pins/1: node 2 is pinned twice"});
     expectMistake(sceneWith(sheetWith(R"(, "positions": [1, 2, 3])")), {"/cloths/0/positions: expected", "= 27"});
-    expectMistake(sceneWith(R"({"shape": {"type": "mesh", "file": "none.obj"}})"), {"/cloths/0/shape/file", "none.obj"});
+    expectMistake(sceneWith(R"({"shape": {"type": "mesh", "file": "none.obj"}})"),
+                  {"/cloths/0/shape/file", "none.obj"});
     expectMistake(sceneWith(sheet, R"(, "obstacles": [{"shape": {"type": "plane"}, "mass": 1}])"),
                   {"/obstacles/0/mass: a plane or height field cannot be dynamic"});
     expectMistake(sceneWith(sheet, R"(, "obstacles": [{"shape": {"type": "ball"}}])"), {"/obstacles/0/shape/type"});
-    expectMistake(sceneWith(sheetWith(R"(, "pins": [{"nodes": [0], "motion": {"keyframes": [{"time": 1}, {"time": 1}]}}])")),
-                  {"/motion/keyframes/1/time: times of keyframes must increase"});
+    expectMistake(
+        sceneWith(sheetWith(R"(, "pins": [{"nodes": [0], "motion": {"keyframes": [{"time": 1}, {"time": 1}]}}])")),
+        {"/motion/keyframes/1/time: times of keyframes must increase"});
 }
 
 TEST_F(SceneFiles, OptionsAndNamesAreChecked)
@@ -231,12 +234,11 @@ TEST_F(SceneFiles, OptionsAndNamesAreChecked)
 TEST_F(SceneFiles, RunsAreComparedAndRecorded)
 {
     const std::string scene = write(
-        "scene.json",
-        sceneWith(sheetWith(R"(, "name": "sheet", "position": [0, 0.2, 0])"),
-                  R"(, "obstacles": [{"name": "block", "shape": {"type": "box", "size": [0.5, 0.1, 0.5]},
+        "scene.json", sceneWith(sheetWith(R"(, "name": "sheet", "position": [0, 0.2, 0])"),
+                                R"(, "obstacles": [{"name": "block", "shape": {"type": "box", "size": [0.5, 0.1, 0.5]},
                        "motion": {"velocity": [0, 1, 0]}}], "recording": {"json": ")" +
-                      path("summary.json") + R"(", "point_cache": ")" + path("cache") + R"(", "frames": ")" +
-                      path("frames") + R"("})"));
+                                    path("summary.json") + R"(", "point_cache": ")" + path("cache") +
+                                    R"(", "frames": ")" + path("frames") + R"("})"));
     const ToolRun result = run({"--scene", scene, "--backend", "host", "--compare", "--quiet"});
     ASSERT_EQ(result.m_exitCode, 0) << result.m_err;
     const auto summary = nlohmann::json::parse(readAll(path("summary.json")));

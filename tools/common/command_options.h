@@ -11,7 +11,7 @@ namespace drape
 struct CommandOption
 {
     std::vector<std::string> m_names;    // --json, -h
-    std::string m_type;                  // of its value; empty: a flag
+    std::string m_type;                  // type of the value; empty: a flag
     std::string m_text;                  // one line
     std::string m_default;               // empty: none
     std::vector<std::string> m_choices;  // words of which the value is one; empty: any value

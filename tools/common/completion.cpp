@@ -84,8 +84,8 @@ std::string bashScript(const CLI::App& app)
     std::string options = "    *) words='" + joined(namesOf(app)) + "' ;;\n", find, values = bashValues(app);
     const std::vector<std::string> commands = commandNames(app);
     if (!commands.empty())
-        find = "  local i\n  for ((i = 1; i < COMP_CWORD; i++)); do\n    case ${COMP_WORDS[i]} in " + joined(commands, "|") +
-               ") command=${COMP_WORDS[i]} ;; esac\n  done\n";
+        find = "  local i\n  for ((i = 1; i < COMP_CWORD; i++)); do\n    case ${COMP_WORDS[i]} in " +
+               joined(commands, "|") + ") command=${COMP_WORDS[i]} ;; esac\n  done\n";
     std::string cases;
     for (const CLI::App* command : commandsOf(app))
     {

@@ -58,8 +58,8 @@ std::string commandsText(const CLI::App& app)
 {
     std::string text;
     for (const CLI::App* command : commandsOf(app))
-        text += ".SS " + command->get_name() + "\n" + plainRoff(command->get_description()) + "\n" +
-                optionsText(*command);
+        text +=
+            ".SS " + command->get_name() + "\n" + plainRoff(command->get_description()) + "\n" + optionsText(*command);
     return text.empty() ? "" : ".SH COMMANDS\n" + text;
 }
 

@@ -5,7 +5,7 @@
 namespace drape
 {
 // Masses are those of common qualities in the trade: g/m², oz/yd² (33.906 g/m²) and momme (4.340 g/m²). The other
-// numbers are choices; docs/scene_files.md has what they do to a hanging and to an overhanging cloth.
+// numbers are choices. docs/scene_files.md lists their effects on cloth that hangs and on a strip over an edge.
 const std::vector<NamedMaterial>& materialPresets()
 {
     static const std::vector<NamedMaterial> presets = {
@@ -14,7 +14,7 @@ const std::vector<NamedMaterial>& materialPresets()
         {"denim", "jeans, 11 oz/yd²", {1, 0.2, 0.03, 0.6, 0.373}},
         {"terry", "towel, 450 g/m²", {0.9, 0.1, 0.05, 0.8, 0.45}},
         {"leather", "jacket, 0.7 mm of 0.8 g/cm³", {1, 0.4, 0.05, 0.6, 0.56}},
-        {"rubber", "latex sheet, 0.5 mm of 0.93 g/cm³", {0.1, 0.05, 0.02, 1, 0.465}}};
+        {"rubber", "latex sheet, 0.5 mm of 0.93 g/cm³", {0.7, 0.05, 0.02, 1, 0.465}}};
     return presets;
 }
 

@@ -9,7 +9,7 @@ namespace drape
 {
 namespace
 {
-constexpr btScalar kFacesOfANode = 6;  // that push it together
+constexpr btScalar kFacesOfANode = 6;  // number of faces that push an inner node
 }
 
 void addWind(btSoftBody& body, const SceneWind& wind, double dt)
