@@ -36,9 +36,12 @@ TriangleMesh clothAt(const Recording& run, std::size_t frame, std::size_t obstac
 {
     TriangleMesh cloth;
     frame = std::min(frame, run.m_frameCount - 1);
+    const bool anyRigid = std::any_of(run.m_bodies.begin(), run.m_bodies.end(),
+                                      [](const RecordedBody& body) { return body.m_rigid; });
     for (const RecordedBody& body : run.m_bodies)
     {
-        if (body.m_rigid || body.m_triangles.size() == 3 * obstacleTriangles) continue;
+        // Without a rigid body the obstacle is a soft one.
+        if (body.m_rigid || (!anyRigid && body.m_triangles.size() == 3 * obstacleTriangles)) continue;
         const auto first = static_cast<std::int32_t>(cloth.vertexCount());
         const float* positions = &body.m_frames[frame * body.frameSize()];
         cloth.m_positions.insert(cloth.m_positions.end(), positions, positions + body.frameSize());
