@@ -47,13 +47,14 @@ for program in "$@"; do
 done
 
 cd "$folder"
-touch bunny.obj
+touch bunny.obj 'my cloth.obj'
 for program in "$@"; do
   name=$(basename "$program")
   case $name in
     cloth_drop)
       expect automatic : --mode a
       expect automatic : --mode = a
+      expect 'my cloth.obj' : --obstacle my
       expect bunny.obj : --obstacle bun ;;
     drape_check)
       expect pairs : pai

@@ -36,8 +36,8 @@ TriangleMesh clothAt(const Recording& run, std::size_t frame, std::size_t obstac
 {
     TriangleMesh cloth;
     frame = std::min(frame, run.m_frameCount - 1);
-    const bool anyRigid = std::any_of(run.m_bodies.begin(), run.m_bodies.end(),
-                                      [](const RecordedBody& body) { return body.m_rigid; });
+    const bool anyRigid =
+        std::any_of(run.m_bodies.begin(), run.m_bodies.end(), [](const RecordedBody& body) { return body.m_rigid; });
     for (const RecordedBody& body : run.m_bodies)
     {
         // Without a rigid body the obstacle is a soft one.

@@ -53,10 +53,10 @@ bool takesFile(const CommandOption& option)
     return option.m_type.find("FILE") != std::string::npos || option.m_type.find("PATH") != std::string::npos;
 }
 
-// Returns the words of a bash array of replies.
+// Returns the command that makes the replies, a line each, so that names may have spaces.
 std::string bashReply(const std::string& generator)
 {
-    return "COMPREPLY=($(compgen " + generator + " -- \"$word\"))";
+    return "mapfile -t COMPREPLY < <(compgen " + generator + " -- \"$word\")";
 }
 
 // Returns the cases of options that take a value. Options of the same name in two commands have the same values.
