@@ -20,6 +20,8 @@ public:
     // Call this after every step with the nodes' new positions. Positions that are not finite are left out.
     void follow(const std::vector<float>& positions);
     std::size_t nodes() const;
+    // Returns for each node whether it went through.
+    const std::vector<bool>& crossed() const { return m_crossed; }
 
 private:
     TriangleTree m_surface;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "scenes/cloth_curve.h"
 #include "scenes/lathe.h"
@@ -13,7 +14,7 @@ namespace drape
 namespace
 {
 constexpr double kPi = 3.14159265358979323846;
-constexpr double kAreaMass = 0.2;   // kg/m², of a cotton sheet
+constexpr double kAreaMass = SceneMaterial().m_areaMass;
 constexpr double kLayerGap = 1.25;  // distance of layers at the start, in thicknesses
 
 // A flat cloth of columns × rows nodes, its longer side `size` m along x or z, at a height of 0.
@@ -21,6 +22,7 @@ SceneCloth flatCloth(int columns, int rows, double size)
 {
     SceneCloth cloth;
     cloth.m_rest = makeClothGrid(columns, rows, float(size), 0);
+    cloth.m_shape = {ClothShape::Kind::Grid, columns, rows, size, 0};
     cloth.m_positions = cloth.m_rest.m_mesh.m_positions;
     const double cell = size / (std::max(columns, rows) - 1);
     cloth.m_mass = kAreaMass * cell * cell * (columns - 1) * (rows - 1);
@@ -55,11 +57,14 @@ void hang(SceneCloth& cloth)
     }
 }
 
-void hold(SceneCloth& cloth, const std::function<bool(const Vector3&)>& isHeld)
+void hold(SceneCloth& cloth, const std::function<bool(const Vector3&)>& isHeld, const SceneMotion& motion)
 {
+    ScenePins pins;
+    pins.m_motion = motion;
     for (std::size_t i = 0; i < cloth.m_positions.size(); i += 3)
         if (isHeld({cloth.m_positions[i], cloth.m_positions[i + 1], cloth.m_positions[i + 2]}))
-            cloth.m_held.push_back(int(i / 3));
+            pins.m_nodes.push_back(int(i / 3));
+    if (!pins.m_nodes.empty()) cloth.m_pins.push_back(pins);
 }
 
 // Rises from 0 at `from` to 1 at `to`, without a jump of the speed.
@@ -90,15 +95,18 @@ void twist(const ClothSceneSize& size, ClothScene& scene)
     scene.m_seconds = 16;
     const int across = 8 * size.m_detail;
     SceneCloth cloth = flatCloth(100 * across / 24 + 1, across + 1, kLength);
-    hold(cloth, [](const Vector3& at) { return std::abs(at.x) > 0.4999 * kLength; });
-    scene.m_cloths.push_back(cloth);
     const double seconds = scene.m_seconds;
-    scene.m_heldAt = [seconds, turns](std::size_t, const Vector3& start, double time)
+    for (const double side : {1.0, -1.0})
     {
-        const double share = std::min(1.0, time / seconds), side = start.x > 0 ? 1 : -1;
-        const double angle = side * 2 * kPi * turns * share, x = start.x * (1 - turns / 8 * share);
-        return Vector3{x, std::sin(angle) * start.z, std::cos(angle) * start.z};
-    };
+        const auto turn = [=](double time)
+        {
+            const double share = std::min(1.0, time / seconds), x = side * kLength / 2;
+            return ScenePose{{x * (1 - turns / 8 * share) - x, 0, 0}, {1, 0, 0}, -side * 2 * kPi * turns * share};
+        };
+        hold(
+            cloth, [side](const Vector3& at) { return side * at.x > 0.4999 * kLength; }, turn);
+    }
+    scene.m_cloths.push_back(cloth);
 }
 
 // A sheet over a funnel, and a ball that pushes it through.
@@ -177,6 +185,7 @@ void knot(const ClothSceneSize& size, ClothScene& scene)
     const Polyline curve = smoothCurve(points, 12);
     // A strip whose two legs were straight would reach half of its length.
     const double slack = lengthOf(curve) / 2 - kEnd;
+    const double seconds = scene.m_seconds;
     const int nodes = 160 * size.m_detail + 1, rows = 3 * size.m_detail + 1;
     for (const double side : {1.0, -1.0})
     {
@@ -185,15 +194,16 @@ void knot(const ClothSceneSize& size, ClothScene& scene)
             point = {side * point.x, point.y, side * point.z};
         SceneCloth strip = flatCloth(nodes, rows, lengthOf(curve));
         strip.m_positions = placeAlong(strip.m_rest, nodes, own, {0, 0, 1});
-        hold(strip, [](const Vector3& at) { return std::abs(at.x) > 0.99 * kEnd; });
+        for (const double end : {1.0, -1.0})
+        {
+            const auto pull = [=](double time) {
+                return ScenePose{{end * kTightened * slack * smoothStep(time, 0, seconds), 0, 0}};
+            };
+            hold(
+                strip, [end](const Vector3& at) { return end * at.x > 0.99 * kEnd; }, pull);
+        }
         scene.m_cloths.push_back(strip);
     }
-    const double seconds = scene.m_seconds;
-    scene.m_heldAt = [seconds, slack](std::size_t, const Vector3& start, double time)
-    {
-        const double pulled = kTightened * slack * smoothStep(time, 0, seconds);
-        return Vector3{start.x + (start.x > 0 ? pulled : -pulled), start.y, start.z};
-    };
 }
 
 // A towel folded to eight layers that lies on a table.
@@ -219,9 +229,11 @@ void dressed(const ClothSceneSize& size, ClothScene& scene)
     scene.m_seconds = 4;
     SceneCloth dress;
     dress.m_rest = makeClothTube(32 * size.m_detail, 24 * size.m_detail + 1, float(kDress), float(kLength));
+    dress.m_shape = {ClothShape::Kind::Tube, 32 * size.m_detail, 24 * size.m_detail + 1, kDress, kLength};
     dress.m_positions = dress.m_rest.m_mesh.m_positions;
     dress.m_mass = kAreaMass * 2 * kPi * kDress * kLength;
-    hold(dress, [](const Vector3& at) { return at.y > 0.4999 * kLength; });
+    hold(
+        dress, [](const Vector3& at) { return at.y > 0.4999 * kLength; }, nullptr);
     scene.m_cloths.push_back(dress);
     scene.m_obstacles.push_back({makeCapsule(kTrunk, 1.2, 32), nullptr});
     scene.m_obstacles.push_back({makeCapsule(kArm, 0.5, 24), [](double time)
@@ -229,7 +241,6 @@ void dressed(const ClothSceneSize& size, ClothScene& scene)
                                      const double away = 0.12 * (1 - smoothStep(time, 0.5, 2) + smoothStep(time, 3, 4));
                                      return ScenePose{{kTrunk + kArm + 0.02 + away, 0, 0}, {0, 1, 0}, 0};
                                  }});
-    scene.m_heldAt = [](std::size_t, const Vector3& start, double) { return start; };
 }
 
 // A cape on the shoulders of a figure that walks.
@@ -246,7 +257,8 @@ void cape(const ClothSceneSize& size, ClothScene& scene)
     SceneCloth cloth = flatCloth(24 * size.m_detail + 1, 18 * size.m_detail + 1, 1.2);
     hang(cloth);
     shift(cloth, {-0.2, 0.85, 0});
-    hold(cloth, [](const Vector3& node) { return node.y > 1.4499 && std::abs(node.z) < 0.3; });
+    const auto isHeld = [](const Vector3& node) { return node.y > 1.4499 && std::abs(node.z) < 0.3; };
+    hold(cloth, isHeld, [at](double time) { return ScenePose{at(time)}; });
     scene.m_cloths.push_back(cloth);
     scene.m_obstacles.push_back({makeCapsule(0.15, 0.5, 32), [at](double time) {
                                      return ScenePose{at(time) + Vector3{0, 1.2, 0}, {0, 1, 0}, 0};
@@ -261,7 +273,6 @@ void cape(const ClothSceneSize& size, ClothScene& scene)
         };
         scene.m_obstacles.push_back({makeCapsule(0.07, 0.66, 24), swing});
     }
-    scene.m_heldAt = [at](std::size_t, const Vector3& start, double time) { return start + at(time); };
 }
 
 // A strip that two rollers draw in and wring.
@@ -296,18 +307,27 @@ struct NamedScene
 {
     const char* m_name;
     void (*m_make)(const ClothSceneSize& size, ClothScene& scene);
+    const char* m_text;
 };
 
-constexpr NamedScene kScenes[] = {{"twist", twist},
-                                  {"funnel", funnel},
-                                  {"sheets_on_sphere", sheetsOnSphere},
-                                  {"sheets_on_cylinder", sheetsOnCylinder},
-                                  {"roll", roll},
-                                  {"knot", knot},
-                                  {"towel", towel},
-                                  {"dressed", dressed},
-                                  {"cape", cape},
-                                  {"wringer", wringer}};
+constexpr NamedScene kScenes[] = {
+    {"twist", twist, "a towel between two clamps that turn against each other"},
+    {"funnel", funnel, "a sheet over a funnel, and a ball that pushes it through"},
+    {"sheets_on_sphere", sheetsOnSphere, "sheets that fall on a sphere, one above the other"},
+    {"sheets_on_cylinder", sheetsOnCylinder, "sheets that fall on a lying cylinder, one above the other"},
+    {"roll", roll, "a roll of cloth that rolls down a ramp and unrolls"},
+    {"knot", knot, "two strips in a reef knot, pulled tight at their four ends"},
+    {"towel", towel, "a towel folded to eight layers on a table"},
+    {"dressed", dressed, "a dress on a trunk, with an arm that presses it to the side"},
+    {"cape", cape, "a cape on the shoulders of a figure that walks"},
+    {"wringer", wringer, "a strip that two rollers draw in and wring"}};
+
+const NamedScene* findScene(const std::string& name)
+{
+    const auto found = std::find_if(std::begin(kScenes), std::end(kScenes),
+                                    [&](const NamedScene& known) { return name == known.m_name; });
+    return found == std::end(kScenes) ? nullptr : found;
+}
 
 // Displaces each cloth, and a little each node that is not held.
 void displace(ClothScene& scene, std::uint32_t seed)
@@ -317,10 +337,11 @@ void displace(ClothScene& scene, std::uint32_t seed)
     {
         const double most = 0.1 * scene.m_thickness, least = 0.02 * scene.m_thickness;
         const Vector3 all = {random.within(-most, most), random.within(0, most), random.within(-most, most)};
-        if (cloth.m_held.empty()) shift(cloth, all);
+        if (cloth.m_pins.empty()) shift(cloth, all);
         std::vector<unsigned char> isHeld(cloth.m_positions.size() / 3);
-        for (const int node : cloth.m_held)
-            isHeld[std::size_t(node)] = 1;
+        for (const ScenePins& pins : cloth.m_pins)
+            for (const int node : pins.m_nodes)
+                isHeld[std::size_t(node)] = 1;
         for (std::size_t i = 0; i < cloth.m_positions.size(); ++i)
             if (!isHeld[i / 3]) cloth.m_positions[i] += float(random.within(-least, least));
     }
@@ -339,14 +360,19 @@ const std::vector<std::string>& clothSceneNames()
     return names;
 }
 
+std::string clothSceneText(const std::string& name)
+{
+    const NamedScene* const scene = findScene(name);
+    return scene == nullptr ? "" : scene->m_text;
+}
+
 bool makeClothScene(const std::string& name, const ClothSceneSize& size, std::uint32_t seed, ClothScene& scene)
 {
-    const auto found = std::find_if(std::begin(kScenes), std::end(kScenes),
-                                    [&](const NamedScene& known) { return name == known.m_name; });
-    if (found == std::end(kScenes)) return false;
+    const NamedScene* const known = findScene(name);
+    if (known == nullptr) return false;
     scene = ClothScene();
     scene.m_name = name;
-    found->m_make(size, scene);
+    known->m_make(size, scene);
     displace(scene, seed);
     return true;
 }

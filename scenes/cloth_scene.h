@@ -1,26 +1,59 @@
-// Seeded scenes of cloth with itself, with other cloth and with moving obstacles: the same name, size and seed give the
-// same scene. What the scene moves is a function of time alone, so that any engine can run it.
+// Scenes of cloth with itself, with other cloth and with obstacles. Those of makeClothScene() are seeded: the same
+// name, size and seed give the same scene. What a scene moves is a function of time alone, so that any engine can run
+// it.
 //
 // Lengths in metres, y up, seconds, kilograms.
 #pragma once
 
 #include <cstdint>
-#include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "scenes/cloth_grid.h"
 #include "scenes/mesh.h"
+#include "scenes/obstacle_shape.h"
+#include "scenes/scene_pose.h"
 #include "scenes/vector3.h"
 
 namespace drape
 {
-// A turn about an axis through a body's origin, and then a shift of it.
-struct ScenePose
+// Parameters of Bullet's soft bodies, each from 0 to 1.
+struct SceneMaterial
 {
-    Vector3 m_shift;
-    Vector3 m_axis = {0, 1, 0};  // unit
-    double m_angle = 0;          // rad
+    double m_stretch = 1;     // kLST of edges
+    double m_bending = 0.02;  // kLST of bending springs
+    double m_damping = 0.02;  // kDP
+    double m_friction = 0.6;  // kDF
+    double m_areaMass = 0.2;  // kg/m²; used where a cloth has no mass of its own
+};
+
+// Nodes that the scene holds and moves together.
+struct ScenePins
+{
+    std::vector<int> m_nodes;
+    SceneMotion m_motion;  // null: they stay
+    Vector3 m_centre;      // the motion turns about it
+
+    // Returns where a node is that started at `start`.
+    Vector3 at(const Vector3& start, double time) const
+    {
+        return m_motion ? movedPoint(m_motion(time), m_centre, start) : start;
+    }
+};
+
+// The generator of a cloth at rest, and its arguments.
+struct ClothShape
+{
+    enum class Kind
+    {
+        Grid,  // makeClothGrid()
+        Tube,  // makeClothTube(): m_columns around, m_size is the radius
+        Mesh   // from a file or arrays
+    };
+    Kind m_kind = Kind::Mesh;
+    int m_columns = 0, m_rows = 0;
+    double m_size = 0, m_height = 0;
 };
 
 struct SceneCloth
@@ -28,13 +61,50 @@ struct SceneCloth
     ClothGrid m_rest;                // with the lengths at rest
     std::vector<float> m_positions;  // x y z per node where the scene starts
     double m_mass = 0;
-    std::vector<int> m_held;  // nodes that the scene moves
+    std::vector<ScenePins> m_pins{};
+    ClothShape m_shape{};
+    std::string m_name{};
+    SceneMaterial m_material{};
+    std::vector<double> m_nodeMasses{};  // kg; empty: every node has the same share of m_mass
+    double m_margin = -1;                // below 0: half of the scene's thickness
+    bool m_selfCollides = true;          // with itself and with other cloth for which it is on
+    bool m_restsAtStart = false;         // springs have their lengths from m_positions
+    Vector3 m_velocity{};                // at the start
+
+    std::size_t nodeCount() const { return m_positions.size() / 3; }
+    double massOf(std::size_t node) const
+    {
+        return m_nodeMasses.empty() ? m_mass / double(nodeCount()) : m_nodeMasses[node];
+    }
+};
+
+// A mesh that need not be written out: its file, or the name of one of makeShape().
+struct MeshSource
+{
+    std::string m_file{}, m_builtIn{};
+    double m_fit = 0;  // above 0: the mesh was put on the floor at this extent, m
 };
 
 struct SceneObstacle
 {
-    TriangleMesh m_mesh;                             // closed, around its origin
-    std::function<ScenePose(double time)> m_poseAt;  // null: it rests at its origin
+    TriangleMesh m_mesh;      // around its origin; of other shapes what checks and pictures take for it
+    SceneMotion m_poseAt{};   // null: it rests at its origin
+    ObstacleShape m_shape{};  // a mesh by default
+    MeshSource m_source{};
+    std::string m_name{};
+    bool m_moves = true;  // false: it stays at m_poseAt(0)
+    double m_mass = 0;    // above 0: dynamic, starting from m_poseAt(0)
+    double m_friction = 1;
+    double m_margin = -1;         // below 0: half of the scene's thickness
+    Vector3 m_velocity{};         // a dynamic body's at the start
+    Vector3 m_angularVelocity{};  // rad/s
+};
+
+struct SceneWind
+{
+    Vector3 m_velocity;
+    double m_airDensity = 1.2;  // kg/m³
+    double m_drag = 1.2;        // drag coefficient of a flat plate that faces the wind
 };
 
 struct ClothScene
@@ -42,14 +112,20 @@ struct ClothScene
     std::string m_name;
     std::vector<SceneCloth> m_cloths;
     std::vector<SceneObstacle> m_obstacles;
-    double m_thickness = 0;  // at which cloth rests on cloth and on obstacles
-    double m_seconds = 0;    // from the start to the end of the motion
-    // Returns where a held node is: its cloth, where it started, and the time. Null if no node is held.
-    std::function<Vector3(std::size_t cloth, const Vector3& start, double time)> m_heldAt;
+    double m_thickness = 0;      // at which cloth rests on cloth and on obstacles
+    double m_selfThickness = 0;  // at which cloth rests on cloth; 0: twice its margin
+    double m_seconds = 0;        // from the start to the end of the motion
+    Vector3 m_gravity = {0, -9.81, 0};
+    double m_frameTime = 1.0 / 60;
+    int m_stepsPerFrame = 4;
+    int m_iterations = 2;  // piterations; cloth in folds needs short steps more than iterations
+    std::optional<SceneWind> m_wind;
 };
 
 // Names that makeClothScene() knows.
 const std::vector<std::string>& clothSceneNames();
+// Returns one line about a scene, without a full stop. Empty if the name is unknown.
+std::string clothSceneText(const std::string& name);
 
 struct ClothSceneSize
 {

@@ -23,5 +23,5 @@ set(full_suites "BunnyDrop|SettledCloth|Outputs|CpuKernelsTest|RopesDropped|Self
   "ContactModesTest|Needles|SelfStepTest|SelfOracle|LooseEdges|Truth|Check|AnimatedMeshes|StressRows|SkipsTest"
   "BackendMove|FeatureCull|ContactsOracle|HostDeviceTest|Starts|IterationsOfBullet|Memory|BadInputTest"
   "DiscretePlate|PatchCullTest|KinematicPlate|ThreadsTest|OutOfMemory|Soak|Sheets|FastDropping|Prepared"
-  "BuildLogTest|SelfCollision|ClothGuard|ClothScenes|ContactImpulses|TaskSchedulers")
+  "BuildLogTest|SelfCollision|ClothGuard|ClothScenes|ContactImpulses|TaskSchedulers|BuiltInScenes")
 string(JOIN "|" full_suites ${full_suites})

@@ -8,7 +8,7 @@
 #include "benchmarks/support/machine.h"
 #include "tools/cloth_drop/drop_world.h"
 #include "tools/cloth_drop/step_parts.h"
-#include "tools/cloth_drop/timed_solver.h"
+#include "tools/scene_world/timed_solver.h"
 
 namespace drape::bench
 {

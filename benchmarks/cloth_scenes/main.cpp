@@ -32,7 +32,7 @@ struct SceneOptions : CommonOptions
     double m_seconds = 0;         // run of each scene; 0: all
     double m_mostSeconds = 1e12;  // limit on the time of a run
     unsigned m_threads = 0;
-    SceneWorldOptions m_world;
+    int m_iterations = ClothScene().m_iterations;
 };
 
 double percentile(std::vector<double> values, double share)
@@ -92,11 +92,11 @@ std::unique_ptr<SceneWorld> makeWorld(const SceneOptions& options, const ClothSc
 {
     if (method != kDrape)
         return std::make_unique<SceneWorld>(
-            scene, method == kVertexFace ? BulletCollision::NodesAndFaces : BulletCollision::Clusters, options.m_world);
+            scene, method == kVertexFace ? BulletCollision::NodesAndFaces : BulletCollision::Clusters);
     Settings settings = options.settings();
     settings.m_threads = options.m_threads;
     plugin = std::make_unique<Plugin>(settings);
-    return std::make_unique<SceneWorld>(scene, *plugin, options.m_world);
+    return std::make_unique<SceneWorld>(scene, *plugin);
 }
 
 // Sums and maxima of what Drape reports about the steps of a run.
@@ -187,6 +187,7 @@ int measureAll(const SceneOptions& options)
             {
                 ClothScene scene;
                 makeClothScene(name, options.m_size, std::uint32_t(seed), scene);
+                scene.m_iterations = options.m_iterations;
                 table.add(measure(options, scene, seed, method));
                 std::cerr << kProgram << ": " << name << ", seed " << seed << ", " << method << std::endl;
             }
@@ -213,7 +214,7 @@ int run(int argc, char** argv)
         ->check(CLI::Validator(wholeNumber(1, 1000000), ""));
     app.add_option("--steps-per-frame", options.m_stepsPerFrame, "steps of 1/60 s of the scene's time")
         ->check(CLI::Validator(wholeNumber(1, 100), ""));
-    app.add_option("--iterations", options.m_world.m_iterations, "piterations of the cloth")
+    app.add_option("--iterations", options.m_iterations, "piterations of the cloth")
         ->check(CLI::Validator(wholeNumber(1, 1000), ""));
     app.add_option("--threads", options.m_threads, "see cloth_drop")->check(CLI::Validator(wholeNumber(0, 64), ""));
     int exitCode = kExitGood;

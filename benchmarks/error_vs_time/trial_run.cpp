@@ -199,7 +199,7 @@ int streamTrial(const ErrorOptions& options, const ErrorScene& scene, const Tria
     const ErrorScene own = sceneOf(scene, trial);
     const std::unique_ptr<TrialSimulation> simulation = makeTrialSimulation(own, trial, options.settings(), error);
     if (!simulation) return fail(kProgram, kExitFailed, error);
-    streamRun(*simulation, own.m_drop, trial.m_frames * trial.m_substeps,
+    streamRun(*simulation, subjectOf(own.m_drop), trial.m_frames * trial.m_substeps,
               [&]
               {
                   Row end;

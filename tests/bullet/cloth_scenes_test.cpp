@@ -82,9 +82,10 @@ TEST(ClothScene, HeldNodesGoWithTheScene)
     SceneWorld world(scene, plugin);
     for (int step = 0; step < 10; ++step)
         world.step(double(kDt));
-    const int node = scene.m_cloths[0].m_held[0];
+    const ScenePins& pins = scene.m_cloths[0].m_pins[0];
+    const int node = pins.m_nodes[0];
     const float* const start = scene.m_cloths[0].m_positions.data() + 3 * node;
-    const Vector3 held = scene.m_heldAt(0, {start[0], start[1], start[2]}, world.time());
+    const Vector3 held = pins.at({start[0], start[1], start[2]}, world.time());
     EXPECT_EQ(float(world.cloth(0).m_nodes[node].m_x.x()), float(held.x));
     world.release();
     const btScalar height = world.cloth(0).m_nodes[node].m_x.y();
@@ -121,7 +122,7 @@ TEST(ClothScene, ATwistedTowelUntwistsWhenItIsReleased)
     SceneWorld world(scene, plugin);
     world.world().setGravity(btVector3(0, 0, 0));
     world.world().getWorldInfo().m_gravity.setZero();
-    const int columns = world.cloth(0).m_nodes.size() * 2 / int(scene.m_cloths[0].m_held.size());
+    const int columns = world.cloth(0).m_nodes.size() / int(scene.m_cloths[0].m_pins[0].m_nodes.size());
     while (world.time() < 4)
         world.step(kSceneStep);
     const double twisted = twistOf(world.cloth(0), columns);

@@ -36,9 +36,12 @@ TriangleMesh clothAt(const Recording& run, std::size_t frame, std::size_t obstac
 {
     TriangleMesh cloth;
     frame = std::min(frame, run.m_frameCount - 1);
+    const bool anyRigid =
+        std::any_of(run.m_bodies.begin(), run.m_bodies.end(), [](const RecordedBody& body) { return body.m_rigid; });
     for (const RecordedBody& body : run.m_bodies)
     {
-        if (body.m_rigid || body.m_triangles.size() == 3 * obstacleTriangles) continue;
+        // Without a rigid body the obstacle is a soft one.
+        if (body.m_rigid || (!anyRigid && body.m_triangles.size() == 3 * obstacleTriangles)) continue;
         const auto first = static_cast<std::int32_t>(cloth.vertexCount());
         const float* positions = &body.m_frames[frame * body.frameSize()];
         cloth.m_positions.insert(cloth.m_positions.end(), positions, positions + body.frameSize());
@@ -110,12 +113,13 @@ int animationRows(const std::vector<const Recording*>& runs)
     return static_cast<int>(framesOf(runs).size() * runs.size()) * kSize.m_height;
 }
 
-bool writeAnimation(const std::string& path, const std::vector<const Recording*>& runs, const TriangleMesh& obstacle,
+bool writeAnimation(const std::string& path, const std::vector<const Recording*>& runs, const ObstacleAt& obstacleAt,
                     const PictureHooks& hooks, std::string& error)
 {
     const std::vector<std::size_t> frames = framesOf(runs);
     const double frameMs = 1000 * runs.front()->m_frameTime;
-    const View view = viewOf(clothAt(*runs.front(), frames.back(), obstacle.triangleCount()), obstacle);
+    const TriangleMesh last = obstacleAt(frames.back());
+    const View view = viewOf(clothAt(*runs.front(), frames.back(), last.triangleCount()), last);
     AnimationEncoder encoder;
     Image image(0, 0);
     int rowsBefore = 0;
@@ -126,6 +130,7 @@ bool writeAnimation(const std::string& path, const std::vector<const Recording*>
     };
     for (const std::size_t frame : frames)
     {
+        const TriangleMesh obstacle = obstacleAt(frame);
         const auto panels = panelsAt(runs, frame, obstacle.triangleCount());
         if (!drawPicture(panels, obstacle, view, kSize, own, image, error)) break;
         rowsBefore += static_cast<int>(panels.size()) * kSize.m_height;

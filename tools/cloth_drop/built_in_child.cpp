@@ -4,6 +4,7 @@
 
 #include "tools/cloth_drop/interruption.h"
 #include "tools/cloth_drop/progress.h"
+#include "tools/cloth_drop/runner.h"
 #include "tools/cloth_drop/step_stream.h"
 
 namespace drape
@@ -22,10 +23,13 @@ std::string exactText(double value)
     return text;
 }
 
-std::vector<std::string> childArguments(const Options& options, BulletMode mode)
+// Returns the options of the scene: those of the drop, or those of a scene.
+std::vector<std::string> sceneArguments(const Options& options)
 {
+    if (!options.m_scene.empty())
+        return {"--scene=" + options.m_scene,     "--seed",   std::to_string(options.m_seed),  "--detail",
+                std::to_string(options.m_detail), "--sheets", std::to_string(options.m_sheets)};
     std::vector<std::string> arguments = {
-        "cloth_drop",
         "--obstacle=" + options.m_obstacle,  // which may begin with dashes
         "--obstacle-size",
         exactText(options.m_obstacleSize),
@@ -39,45 +43,40 @@ std::vector<std::string> childArguments(const Options& options, BulletMode mode)
         exactText(options.m_dropHeight),
         "--drop-speed",
         exactText(options.m_dropSpeed),
-        "--steps",
-        std::to_string(options.m_steps),
-        "--dt",
-        exactText(options.m_dt),
         "--thickness",
-        exactText(options.m_thickness),
-        "--backend",
-        "bullet",
-        "--bullet-mode",
-        modeName(mode),
-        "--quiet",
-        "--stream-steps"};
+        exactText(options.m_thickness)};
     if (options.m_self) arguments.emplace_back("--self");
+    return arguments;
+}
+
+std::vector<std::string> childArguments(const Options& options, BulletMode mode)
+{
+    std::vector<std::string> arguments = sceneArguments(options);
+    arguments.insert(arguments.begin(), "cloth_drop");
+    for (const char* argument : {"--backend", "bullet", "--bullet-mode", modeName(mode), "--quiet", "--stream-steps"})
+        arguments.emplace_back(argument);
+    arguments.insert(arguments.end(), {"--steps", std::to_string(options.m_steps), "--dt", exactText(options.m_dt)});
     if (!options.m_picture.empty()) arguments.emplace_back("--stream-positions");
     if (options.records()) arguments.emplace_back("--stream-frames");
     return arguments;
 }
 
-void describe(RunRecord& record, BulletMode mode, const DropScene& scene)
+void describe(RunRecord& record, BulletMode mode, const RunSubject& subject)
 {
+    record = recordOf(subject);
     record.m_backend = std::string("bullet (") + modeName(mode) + ")";
     record.m_device = "host";
     record.m_solver = "bullet";
     record.m_deviceReason = "Bullet's own collision runs on the host";
-    const TriangleMesh sheets = sheetsOf(scene);
-    record.m_countsClothPairs = countsClothPairs(scene);
-    record.m_clothTriangles = sheets.triangleCount();
-    record.m_clothNodes = sheets.vertexCount();
-    record.m_obstacleTriangles = scene.m_obstacle.triangleCount();
-    record.m_thickness = scene.m_thickness;
-    record.m_lastPositions = sheets.m_positions;
-    record.m_recording.m_frameTime = scene.m_dt;
+    record.m_lastPositions = subject.m_cloths.m_positions;
+    record.m_recording.m_frameTime = subject.m_dt;
 }
 }  // namespace
 
-bool runBuiltInChild(const Options& options, BulletMode mode, const ChildCap& cap, const DropScene& scene,
+bool runBuiltInChild(const Options& options, BulletMode mode, const ChildCap& cap, const RunPlan& plan,
                      RunRecord& record, std::string& error)
 {
-    describe(record, mode, scene);
+    describe(record, mode, plan.m_subject);
     Progress progress(record.m_backend, options.m_steps, options.m_quiet);
     const ChildEnd end = runCappedChild(
         childArguments(options, mode), cap,
@@ -95,9 +94,9 @@ bool runBuiltInChild(const Options& options, BulletMode mode, const ChildCap& ca
     return error.empty();
 }
 
-void streamBuiltIn(const Options& options, const DropScene& scene)
+void streamBuiltIn(const Options& options, const RunPlan& plan)
 {
-    const std::unique_ptr<Simulation> simulation = makeBulletSimulation(scene, options.m_bulletMode);
-    streamRun(*simulation, scene, options.m_steps, {}, options.m_streamPositions, options.m_streamFrames);
+    const std::unique_ptr<Simulation> simulation = plan.m_makeBullet(options.m_bulletMode);
+    streamRun(*simulation, plan.m_subject, options.m_steps, {}, options.m_streamPositions, options.m_streamFrames);
 }
 }  // namespace drape

@@ -10,14 +10,15 @@
 
 #include "tools/cloth_drop/capped_child.h"
 #include "tools/cloth_drop/options.h"
+#include "tools/cloth_drop/run_plan.h"
 #include "tools/cloth_drop/run_record.h"
 
 namespace drape
 {
 // Runs in the parent. Returns false with one line in `error` if the child could not be started or failed.
-bool runBuiltInChild(const Options& options, BulletMode mode, const ChildCap& cap, const DropScene& scene,
+bool runBuiltInChild(const Options& options, BulletMode mode, const ChildCap& cap, const RunPlan& plan,
                      RunRecord& record, std::string& error);
 
 // Runs in the child and streams its steps. Does not return, since Bullet's own clean-up could take minutes.
-[[noreturn]] void streamBuiltIn(const Options& options, const DropScene& scene);
+[[noreturn]] void streamBuiltIn(const Options& options, const RunPlan& plan);
 }  // namespace drape

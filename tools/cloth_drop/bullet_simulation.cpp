@@ -1,3 +1,4 @@
+#include "tools/cloth_drop/bullet_modes.h"
 #include "tools/cloth_drop/drop_world.h"
 #include "tools/cloth_drop/simulation.h"
 
@@ -5,11 +6,6 @@ namespace drape
 {
 namespace
 {
-// The tuned field has enough cells, so that none is thrown away, and voxels smaller than the bunny's ears' width.
-constexpr int kTunedHashSize = 1048573;
-constexpr int kTunedCells = 16000000;
-constexpr btScalar kTunedVoxel = 0.05f;  // m
-
 class BulletSimulation : public Simulation
 {
 public:
@@ -18,13 +14,7 @@ public:
           m_mode(mode),
           m_dt(scene.m_dt)
     {
-        if (mode == BulletMode::Tuned)
-        {
-            auto& field = m_world.world().getWorldInfo().m_sparsesdf;
-            field.Initialize(kTunedHashSize, kTunedCells);
-            field.setDefaultVoxelsz(kTunedVoxel);
-            field.Reset();  // only now the voxel size counts
-        }
+        if (mode == BulletMode::Tuned) tuneField(m_world.world().getWorldInfo());
         if (mode == BulletMode::SoftPair)
             m_world.addSoftObstacle(scene);
         else

@@ -60,6 +60,20 @@ TriangleMesh sheetsOf(const DropScene& scene)
     return sheets;
 }
 
+RunSubject subjectOf(const DropScene& scene)
+{
+    RunSubject subject;
+    subject.m_cloths = sheetsOf(scene);
+    subject.m_rest = subject.m_cloths.m_positions;
+    subject.m_obstacles = {scene.m_obstacle};
+    subject.m_starts = {ObstacleFrame()};
+    subject.m_isShown = {true};
+    subject.m_thickness = scene.m_thickness;
+    subject.m_dt = scene.m_dt;
+    subject.m_countsClothPairs = countsClothPairs(scene);
+    return subject;
+}
+
 bool makeDropScene(const Options& options, DropScene& scene, std::string& error)
 {
     LoadReport report;

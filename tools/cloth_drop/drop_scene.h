@@ -5,12 +5,23 @@
 #include <vector>
 
 #include "tools/cloth_drop/options.h"
+#include "tools/cloth_drop/run_subject.h"
 #include "scenes/cloth_grid.h"
+#include "scenes/cloth_scene.h"
 #include "scenes/mesh.h"
 
 namespace drape
 {
 constexpr double kGravity = 9.81;  // m/s² downwards
+
+constexpr int kDropIterations = 5;  // piterations
+
+// Returns a woven cloth: stiff along its threads, soft in bending, with some air drag, and enough friction to stay on a
+// round obstacle.
+inline SceneMaterial dropMaterial()
+{
+    return {0.9, 0.1, 0.02, 0.6};
+}
 
 struct DropScene
 {
@@ -34,6 +45,9 @@ inline bool countsClothPairs(const DropScene& scene)
 
 // Returns all sheets as one mesh, one after the other, the lowest first.
 TriangleMesh sheetsOf(const DropScene& scene);
+
+// Returns what is measured of a run of the scene.
+RunSubject subjectOf(const DropScene& scene);
 
 // Returns false, with one line in `error`, if the obstacle cannot be made.
 bool makeDropScene(const Options& options, DropScene& scene, std::string& error);

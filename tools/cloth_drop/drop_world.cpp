@@ -11,13 +11,6 @@ namespace
 {
 using Clock = std::chrono::steady_clock;
 
-// Woven cloth: stiff along its threads, soft in bending, some air drag, and enough friction to stay on a round
-// obstacle.
-constexpr btScalar kEdgeStiffness = 0.9f;
-constexpr btScalar kBendingStiffness = 0.1f;
-constexpr btScalar kDamping = 0.02f;
-constexpr btScalar kFriction = 0.6f;
-constexpr int kPositionIterations = 5;
 constexpr int kNodesPerCluster = 16;
 
 double since(Clock::time_point start)
@@ -36,7 +29,7 @@ std::unique_ptr<btSoftBody> makeBody(btSoftBodyWorldInfo& info, const TriangleMe
     for (std::size_t t = 0; t < mesh.triangleCount(); ++t)
         body->appendFace(mesh.m_triangles[3 * t], mesh.m_triangles[3 * t + 1], mesh.m_triangles[3 * t + 2]);
     body->getCollisionShape()->setMargin(static_cast<btScalar>(margin));
-    body->m_cfg.kDF = kFriction;
+    body->m_cfg.kDF = btScalar(dropMaterial().m_friction);
     return body;
 }
 
@@ -46,13 +39,6 @@ void addSprings(btSoftBody& body, const std::vector<std::int32_t>& springs, btSo
         body.appendLink(springs[i], springs[i + 1], material);
 }
 }  // namespace
-
-void TimedWorld::performDiscreteCollisionDetection()
-{
-    const Clock::time_point start = Clock::now();
-    btSoftRigidDynamicsWorld::performDiscreteCollisionDetection();
-    m_collisionMs = since(start);
-}
 
 DropWorld::DropWorld(std::unique_ptr<btCollisionConfiguration> configuration, std::unique_ptr<btSoftBodySolver> solver)
     : m_configuration(std::move(configuration)),
@@ -150,13 +136,13 @@ void DropWorld::addSheet(const DropScene& scene, const TriangleMesh& sheet, bool
     m_cloths.push_back(makeBody(m_world.getWorldInfo(), sheet, scene.m_mass, 0.5 * scene.m_thickness));
     btSoftBody& cloth = *m_cloths.back();
     btSoftBody::Material* edges = cloth.m_materials[0];
-    edges->m_kLST = kEdgeStiffness;
+    edges->m_kLST = btScalar(dropMaterial().m_stretch);
     btSoftBody::Material* bending = cloth.appendMaterial();
-    bending->m_kLST = kBendingStiffness;
+    bending->m_kLST = btScalar(dropMaterial().m_bending);
     addSprings(cloth, scene.m_cloth.m_edgeSprings, edges);
     addSprings(cloth, scene.m_cloth.m_bendingSprings, bending);
-    cloth.m_cfg.piterations = kPositionIterations;
-    cloth.m_cfg.kDP = kDamping;
+    cloth.m_cfg.piterations = kDropIterations;
+    cloth.m_cfg.kDP = btScalar(dropMaterial().m_damping);
     cloth.m_cfg.collisions =
         softPairs ? btSoftBody::fCollision::VF_SS : static_cast<int>(btSoftBody::fCollision::SDF_RS);
     cloth.setVelocity(btVector3(0, static_cast<btScalar>(-scene.m_dropSpeed), 0));

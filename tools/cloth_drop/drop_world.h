@@ -14,21 +14,10 @@
 #include <btBulletCollisionCommon.h>
 
 #include "tools/cloth_drop/drop_scene.h"
+#include "tools/scene_world/timed_world.h"
 
 namespace drape
 {
-// Measures how long Bullet's collision detection takes in a step.
-class TimedWorld : public btSoftRigidDynamicsWorld
-{
-public:
-    using btSoftRigidDynamicsWorld::btSoftRigidDynamicsWorld;
-    void performDiscreteCollisionDetection() override;
-    double collisionMs() const { return m_collisionMs; }
-
-private:
-    double m_collisionMs = 0;
-};
-
 class DropWorld
 {
 public:

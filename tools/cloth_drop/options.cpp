@@ -12,6 +12,7 @@
 #include "tools/common/arguments.h"
 #include "tools/common/program.h"
 #include "tools/common/suggestion.h"
+#include "tools/scene_file/built_in_scene.h"
 
 namespace drape
 {
@@ -77,6 +78,13 @@ std::string hash(std::string& text)
     return "";
 }
 
+const std::map<std::string, BulletMode>& bulletModes()
+{
+    static const std::map<std::string, BulletMode> modes = {
+        {"stock", BulletMode::Stock}, {"tuned", BulletMode::Tuned}, {"vfss", BulletMode::SoftPair}};
+    return modes;
+}
+
 void addSceneOptions(CLI::App& app, Options& options, std::string& cloth)
 {
     const auto positive = CLI::Validator(numberAbove(0, false, "more than 0"), "");
@@ -106,6 +114,26 @@ void addSceneOptions(CLI::App& app, Options& options, std::string& cloth)
     app.add_option("--thickness", options.m_thickness,
                    "gap at rest, the sum of the cloth's and the obstacle's equal margins, m, 0.0001 to 10000")
         ->check(CLI::Validator(numberUpTo(kLongest, kLeastThickness, true, "0.0001 or more, 10000 at most"), ""));
+}
+
+void addSceneFileOptions(CLI::App& app, Options& options)
+{
+    app.add_option("--scene", options.m_scene,
+                   "run a scene file (JSON) or a built-in scene instead of the drop on an obstacle")
+        ->type_name("FILE|NAME");
+    app.add_flag("--list-scenes", options.m_listScenes, "list the built-in scenes and exit");
+    app.add_option("--seed", options.m_seed, "seed of a built-in scene, 0 to 2147483647")
+        ->check(CLI::Validator(wholeNumber(0, 2147483647), ""));
+    app.add_option("--detail", options.m_detail,
+                   "detail of a built-in scene, 1 to 50; twice as much has four times as many triangles")
+        ->check(CLI::Validator(wholeNumber(1, 50), ""));
+    app.add_option("--sheets", options.m_sheets, "sheets of a built-in scene that drops sheets, 1 to 100")
+        ->check(CLI::Validator(wholeNumber(1, 100), ""));
+    app.add_option("--write-scene", options.m_writeScene,
+                   "write the scene as a file, which gives the same positions, and exit")
+        ->type_name("FILE.json")
+        ->transform(CLI::Validator(outputFile, ""));
+    app.add_flag("--list-materials", options.m_listMaterials, "list the materials of scene files and exit");
 }
 
 void addBackendOptions(CLI::App& app, Options& options, std::string& mode)
@@ -168,6 +196,25 @@ void addOutputOptions(CLI::App& app, Options& options)
     app.add_flag("--stream-frames", options.m_streamFrames, "")->group("");
 }
 
+// Returns the reason why options of the drop and of scenes contradict each other, or "".
+std::string sceneConflict(const CLI::App& app, const Options& options)
+{
+    const auto given = [&app](const char* name) { return app.count(name) > 0; };
+    if (!options.m_scene.empty())
+        for (const char* name : {"--obstacle", "--obstacle-size", "--cloth", "--cloth-size", "--layers", "--self",
+                                 "--drop-height", "--drop-speed", "--thickness", "--compare-vfss"})
+            if (given(name)) return std::string(name) + " has no effect with --scene";
+    if (given("--scene") && options.m_scene.empty()) return "--scene is empty";
+    const bool builtIn = !options.m_scene.empty() && !isSceneFile(options.m_scene);
+    for (const char* name : {"--seed", "--detail", "--sheets"})
+        if (given(name) && !builtIn && !options.m_streamSteps)
+            return std::string(name) + " needs a built-in scene; see --list-scenes";
+    if (!options.m_scene.empty() && options.m_bulletMode == BulletMode::SoftPair)
+        return "--bullet-mode vfss runs the drop on an obstacle alone";
+    if (options.m_writeScene == "-") return "--write-scene needs a file, not -";
+    return "";
+}
+
 std::string conflict(const Options& options)
 {
     if (!((options.m_dropSpeed + kGravity * options.m_dt) * options.m_dt <= kFarthest))
@@ -193,19 +240,21 @@ bool parseOptions(int argc, const char* const* argv, Options& options, int& exit
     std::string cloth = "33x33", mode = "stock";
     app.option_defaults()->always_capture_default();
     addSceneOptions(app, options, cloth);
+    addSceneFileOptions(app, options);
     addBackendOptions(app, options, mode);
     addOutputOptions(app, options);
     const auto problem = [&]() -> std::string
     {
         if (options.usesDrape() && app.count("--bullet-mode") > 0)
             return "--bullet-mode needs --backend bullet; --compare runs stock and tuned, --compare-vfss also vfss";
-        return conflict(options);
+        options.m_bulletMode = bulletModes().at(mode);
+        const std::string reason = sceneConflict(app, options);
+        return reason.empty() ? conflict(options) : reason;
     };
     if (!parseArguments(app, argc, argv, problem, exitCode)) return false;
     std::sscanf(cloth.c_str(), "%d%*c%d", &options.m_clothColumns, &options.m_clothRows);
-    static const std::map<std::string, BulletMode> modes = {
-        {"stock", BulletMode::Stock}, {"tuned", BulletMode::Tuned}, {"vfss", BulletMode::SoftPair}};
-    options.m_bulletMode = modes.at(mode);
+    options.m_stepsGiven = app.count("--steps") > 0;
+    options.m_dtGiven = app.count("--dt") > 0;
     return true;
 }
 }  // namespace drape

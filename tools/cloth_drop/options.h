@@ -18,6 +18,11 @@ enum class BulletMode
 struct Options
 {
     std::string m_obstacle = "sphere";  // a shape's name or a file
+    std::string m_scene;                // a scene file or a built-in scene; empty: the drop on the obstacle
+    std::string m_writeScene;
+    int m_seed = 1, m_detail = 1, m_sheets = 8;  // for a built-in scene
+    bool m_listScenes = false, m_listMaterials = false;
+    bool m_stepsGiven = false, m_dtGiven = false;  // on the command line
     double m_obstacleSize = 2.0;
     int m_clothColumns = 33;
     int m_clothRows = 33;

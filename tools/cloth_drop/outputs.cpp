@@ -42,10 +42,13 @@ bool areApart(const Output& one, const Output& other, std::string& error)
 // Names that --frames writes.
 bool isFrame(const std::string& name)
 {
-    const std::string start = "cloth_", end = ".ply";
-    return name == "obstacle.ply" ||
-           (name.size() > start.size() + end.size() && name.compare(0, start.size(), start) == 0 &&
-            name.compare(name.size() - end.size(), end.size(), end) == 0);
+    const std::string end = ".ply";
+    const auto isNumbered = [&](const std::string& start)
+    {
+        return name.size() > start.size() + end.size() && name.compare(0, start.size(), start) == 0 &&
+               name.compare(name.size() - end.size(), end.size(), end) == 0;
+    };
+    return name == "obstacle.ply" || isNumbered("cloth_") || isNumbered("obstacle_");
 }
 
 // Refuses an output file that --frames would overwrite.
@@ -56,6 +59,17 @@ bool spares(const Options& options, const Output& file, std::string& error)
     const std::string folder = path.has_parent_path() ? path.parent_path().string() : ".";
     if (!options.m_frames.empty() && isFrame(path.filename().string()) && areOneFile(folder, options.m_frames))
         error = file.m_path + ": --frames writes a file of that name there";
+    return error.empty();
+}
+
+// Refuses an output that would replace a file that was read.
+bool sparesInputs(const Output& output, const std::vector<std::pair<std::string, std::string>>& inputs,
+                  std::string& error)
+{
+    if (output.m_path.empty() || output.m_path == kStandardOutput) return true;
+    for (const auto& [option, path] : inputs)
+        if (areOneFile(output.m_path, path))
+            error = std::string(output.m_option) + " would write over the file of " + option + ", " + path;
     return error.empty();
 }
 
@@ -82,7 +96,8 @@ bool makeFolder(const std::string& path, std::string& error)
 }
 }  // namespace
 
-bool prepareOutputs(const Options& options, std::string& error)
+bool prepareOutputs(const Options& options, const std::vector<std::pair<std::string, std::string>>& inputs,
+                    std::string& error)
 {
     if (!options.m_frames.empty() && !makeFolder(options.m_frames, error)) return false;
     if (!options.m_pointCache.empty() && !makeFolder(options.m_pointCache, error)) return false;
@@ -92,14 +107,12 @@ bool prepareOutputs(const Options& options, std::string& error)
                               {"--replay", options.m_replay, ".html", "page"},
                               {"--animation", options.m_animation, ".webp", "WebP"},
                               {"--gltf", options.m_gltf, ".glb", "binary glTF"}};
-    const Output obstacle = {"--obstacle", options.m_obstacle};
-    if (!spares(options, obstacle, error)) return false;
+    for (const auto& [option, path] : inputs)
+        if (!spares(options, {option.c_str(), path}, error)) return false;
     for (const Output& output : outputs)
     {
         if (!spares(options, output, error) || !couldWrite(output.m_path, error)) return false;
-        if (!output.m_path.empty() && output.m_path != kStandardOutput && areOneFile(output.m_path, obstacle.m_path))
-            error = std::string(output.m_option) + " would write over the file of --obstacle, " + obstacle.m_path;
-        if (!error.empty()) return false;
+        if (!sparesInputs(output, inputs, error)) return false;
     }
     for (const Output& output : outputs)
     {

@@ -12,7 +12,8 @@ namespace drape
 {
 // Makes the frames' folder and checks that each named file could be written, and is no other's. False with one line in
 // `error`.
-bool prepareOutputs(const Options& options, std::string& error);
+bool prepareOutputs(const Options& options, const std::vector<std::pair<std::string, std::string>>& inputs,
+                    std::string& error);
 
 // Writes CSV (of the first run), JSON and the table. Tries all, reports the first failure in `error`.
 bool writeOutputs(const Options& options, const std::vector<NamedRun>& runs, std::string& error);

@@ -19,7 +19,7 @@ struct StepRecord
     std::size_t m_nodesThrough = 0;  // whose way met the obstacle's surface, in this step or before (Crossings)
     std::size_t m_selfPairs = 0;     // intersecting pairs of cloth triangles, of one cloth or two
     double m_speed = 0;              // m/s, root mean square of the nodes' speeds over the step
-    MeshStretch m_stretch;           // against the cloth at the start
+    MeshStretch m_stretch;           // against the cloth at rest
     std::uint64_t m_hash = 0;        // hash of all positions up to and including this step
 };
 
@@ -34,8 +34,9 @@ struct RunRecord
     std::vector<StepRecord> m_steps;
     std::vector<float> m_lastPositions;  // x y z per cloth node after the last step; a child's only where asked for
     Recording m_recording;               // empty unless asked for
-    bool m_capped = false;               // something ended the run before its last step: those done are there
-    std::string m_trouble;               // one line, or empty
+    std::vector<std::vector<ObstacleFrame>> m_obstacles;  // at each frame of the recording; else after the last step
+    bool m_capped = false;  // something ended the run before its last step: those done are there
+    std::string m_trouble;  // one line, or empty
 };
 
 // Summarises the steps that had contacts; `m_first` is the first of them. All values are 0 if there was none.

@@ -3,35 +3,43 @@
 #include <utility>
 
 #include "drape/recorder.h"
-#include "oracle/crossings.h"
 #include "oracle/self_intersections.h"
 #include "scenes/mesh_writer.h"
+#include "tools/cloth_drop/obstacle_checks.h"
 
 namespace drape
 {
 namespace
 {
-RunRecord startRecord(const Simulation& simulation, const DropScene& scene, const TriangleMesh& sheets)
+RunRecord startRecord(const Simulation& simulation, const RunSubject& subject)
 {
-    RunRecord record;
+    RunRecord record = recordOf(subject);
     record.m_prepareMs = simulation.prepareMs();
-    record.m_clothTriangles = sheets.triangleCount();
-    record.m_clothNodes = sheets.vertexCount();
-    record.m_obstacleTriangles = scene.m_obstacle.triangleCount();
-    record.m_thickness = scene.m_thickness;
-    record.m_countsClothPairs = countsClothPairs(scene);
     return record;
+}
+
+// Keeps the obstacles' frames of each recorded frame, or of the last one.
+void keepObstacles(const Simulation& simulation, bool all, RunRecord& record)
+{
+    if (!all) record.m_obstacles.clear();
+    record.m_obstacles.push_back(simulation.obstacleFrames());
+}
+
+bool writeObstacles(const RunSubject& subject, const RunRecord& record, const std::string& folder, int number,
+                    std::string& error)
+{
+    return !subject.m_obstaclesMove ||
+           writeMesh(frameName(folder, "obstacle", number), subject.shown(record.m_obstacles.back()), error);
 }
 
 // Records the start and every step, if that is asked for.
 class RunRecorder
 {
 public:
-    RunRecorder(Simulation& simulation, const DropScene& scene, const RunHooks& hooks)
-        : m_simulation(simulation), m_hooks(hooks)
+    RunRecorder(Simulation& simulation, double dt, const RunHooks& hooks) : m_simulation(simulation), m_hooks(hooks)
     {
         RecorderSettings settings;
-        settings.m_frameTime = scene.m_dt;
+        settings.m_frameTime = dt;
         if (hooks.m_records) m_recorder = std::make_unique<Recorder>(simulation.world(), settings);
         record();
     }
@@ -53,20 +61,30 @@ private:
 };
 }  // namespace
 
-bool runSimulation(Simulation& simulation, const DropScene& scene, int steps, const std::string& framesFolder,
+RunRecord recordOf(const RunSubject& subject)
+{
+    RunRecord record;
+    record.m_clothTriangles = subject.m_cloths.triangleCount();
+    record.m_clothNodes = subject.m_cloths.vertexCount();
+    record.m_obstacleTriangles = subject.obstacleTriangles();
+    record.m_thickness = subject.m_thickness;
+    record.m_countsClothPairs = subject.m_countsClothPairs;
+    record.m_obstacles = {subject.m_starts};
+    return record;
+}
+
+bool runSimulation(Simulation& simulation, const RunSubject& subject, int steps, const std::string& framesFolder,
                    const RunHooks& hooks, RunRecord& record, std::string& error)
 {
-    const TriangleMesh sheets = sheetsOf(scene);
-    record = startRecord(simulation, scene, sheets);
-    TriangleMesh lastFrame = sheets;
-    PenetrationMeter meter(scene.m_obstacle, sheets);
-    Crossings crossings(scene.m_obstacle, sheets.m_positions);
-    SelfIntersections self(sheets);
-    const StretchMeter stretch(sheets);
+    record = startRecord(simulation, subject);
+    TriangleMesh lastFrame = subject.m_cloths;
+    ObstacleChecks checks(subject);
+    SelfIntersections self(lastFrame);
+    const StretchMeter stretch({subject.m_rest, lastFrame.m_triangles});
     std::uint64_t hash = kHashStart;
-    RunRecorder recorder(simulation, scene, hooks);
+    RunRecorder recorder(simulation, subject.m_dt, hooks);
     const bool frames = !framesFolder.empty();
-    if (frames && !(writeMesh(framesFolder + "/obstacle.ply", scene.m_obstacle, error) &&
+    if (frames && !(writeMesh(framesFolder + "/obstacle.ply", subject.shown(subject.m_starts), error) &&
                     writeMesh(frameName(framesFolder, "cloth", 0), lastFrame, error)))
         return false;
     for (int number = 1; number <= steps; ++number)
@@ -76,18 +94,19 @@ bool runSimulation(Simulation& simulation, const DropScene& scene, int steps, co
         step.m_times = simulation.step();
         if (hooks.m_stepped) hooks.m_stepped(number);
         const std::vector<float>& positions = simulation.positions();
-        step.m_speed = rmsSpeed(lastFrame.m_positions, positions, scene.m_dt);
+        step.m_speed = rmsSpeed(lastFrame.m_positions, positions, subject.m_dt);
         lastFrame.m_positions = positions;
-        step.m_measure = meter.measure(lastFrame.m_positions.data());
+        keepObstacles(simulation, hooks.m_records, record);
+        step.m_measure = checks.measure(lastFrame.m_positions, record.m_obstacles.back());
         if (record.m_countsClothPairs) step.m_selfPairs = self.find(positions).size();
         step.m_stretch = stretch.measure(positions);
-        crossings.follow(positions);
-        step.m_nodesThrough = crossings.nodes();
+        step.m_nodesThrough = checks.nodesThrough();
         step.m_hash = hash = hashFloats(hash, lastFrame.m_positions);
         recorder.record();
         if (hooks.m_afterStep) hooks.m_afterStep(number, step);
         record.m_steps.push_back(std::move(step));
-        const bool written = !frames || writeMesh(frameName(framesFolder, "cloth", number), lastFrame, error);
+        const bool written = !frames || (writeMesh(frameName(framesFolder, "cloth", number), lastFrame, error) &&
+                                         writeObstacles(subject, record, framesFolder, number, error));
         if (written && (number == steps || !hooks.m_goesOn || hooks.m_goesOn())) continue;
         record.m_capped = true;
         break;

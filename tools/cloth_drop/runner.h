@@ -18,8 +18,12 @@ struct RunHooks  // any may be empty
     bool m_records = false;                                   // keeps the run's frames in RunRecord::m_recording
 };
 
+// Returns a record without steps: the sizes of the run, and its obstacles at the start.
+RunRecord recordOf(const RunSubject& subject);
+
 // Runs the simulation. A run that is stopped is capped at its last step. Returns false, with one line in `error`, if a
 // frame could not be written; the record then has the steps until that frame. An empty `framesFolder` writes no frames.
-bool runSimulation(Simulation& simulation, const DropScene& scene, int steps, const std::string& framesFolder,
+// It gets obstacle.ply for the start, cloth_NNNN.ply for every step, and obstacle_NNNN.ply if obstacles move.
+bool runSimulation(Simulation& simulation, const RunSubject& subject, int steps, const std::string& framesFolder,
                    const RunHooks& hooks, RunRecord& record, std::string& error);
 }  // namespace drape

@@ -10,6 +10,7 @@
 
 #include "tools/cloth_drop/drop_scene.h"
 #include "tools/cloth_drop/options.h"
+#include "tools/cloth_drop/run_subject.h"
 #include "tools/cloth_drop/step_parts.h"
 
 class btCollisionWorld;
@@ -43,6 +44,9 @@ public:
 
     // Returns x y z per cloth node, m; valid until the next step.
     virtual const std::vector<float>& positions() = 0;
+
+    // Returns where the obstacles of the run are (run_subject.h).
+    virtual std::vector<ObstacleFrame> obstacleFrames() const { return {ObstacleFrame()}; }
 
     // Returns the world, for a recorder.
     virtual const btCollisionWorld& world() = 0;

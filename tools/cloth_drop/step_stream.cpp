@@ -81,8 +81,8 @@ StepRecord stepFromLine(const std::string& text, RunRecord& record)
     return step;
 }
 
-void streamRun(Simulation& simulation, const DropScene& scene, int steps, const std::function<std::string()>& lastLine,
-               bool positions, bool frames)
+void streamRun(Simulation& simulation, const RunSubject& subject, int steps,
+               const std::function<std::string()>& lastLine, bool positions, bool frames)
 {
     RunHooks hooks;
     bool good = true;
@@ -110,7 +110,7 @@ void streamRun(Simulation& simulation, const DropScene& scene, int steps, const 
     };
     RunRecord record;
     std::string error;
-    const bool ran = runSimulation(simulation, scene, steps, "", hooks, record, error);
+    const bool ran = runSimulation(simulation, subject, steps, "", hooks, record, error);
     if (ran && lastLine) send(lastLine());
     std::_Exit(ran ? kExitGood : kExitFailed);
 }

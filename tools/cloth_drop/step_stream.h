@@ -19,7 +19,7 @@ void startFromLine(const std::string& line, Recording& recording);
 // Runs in the child. Writes each step's lines (capped_lines.h) and its measurements as a line of JSON, with `positions`
 // and `frames` if requested. At the end it writes the result of lastLine, if given. Does not return, since Bullet's own
 // clean-up could take minutes.
-[[noreturn]] void streamRun(Simulation& simulation, const DropScene& scene, int steps,
+[[noreturn]] void streamRun(Simulation& simulation, const RunSubject& subject, int steps,
                             const std::function<std::string()>& lastLine = {}, bool positions = false,
                             bool frames = false);
 }  // namespace drape

@@ -1,4 +1,4 @@
-// Measures how far a cloth's edges are stretched against their lengths at the start.
+// Measures how far a cloth's edges are stretched against their lengths at rest.
 #pragma once
 
 #include <cstdint>

@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 
 #include "tools/common/argument_mistakes.h"
+#include "tools/common/command_pages.h"
 #include "tools/common/suggestion.h"
 #include "drape/version.h"
 
@@ -113,7 +114,11 @@ bool parseArguments(CLI::App& app, int argc, const char* const* argv, const std:
 {
     app.set_version_flag("--version", app.get_name() + " (Drape) " + DRAPE_VERSION_STRING,
                          "print the version and exit");
-    std::string problem;
+    std::string problem, shell;
+    bool man = false;
+    app.add_flag("--man-page", man, "print a man page and exit");
+    acceptOnly(app.add_option("--completion", shell, "print a script for the shell's completion and exit"),
+               {kBash, kZsh, kFish});
     const auto printAndLeave = [&](const std::string& text)
     {
         std::cout << text;
@@ -126,6 +131,8 @@ bool parseArguments(CLI::App& app, int argc, const char* const* argv, const std:
     {
         app.parse(argc, argv);
         problem = mistake();
+        if (problem.empty() && man) return printAndLeave(manPage(app));
+        if (problem.empty() && !shell.empty()) return printAndLeave(completionScript(app, shell));
         if (problem.empty()) problem = conflict();
     }
     catch (const CLI::CallForHelp&)

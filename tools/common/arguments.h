@@ -33,9 +33,9 @@ std::string outputFile(std::string& text);
 // Makes the option refuse every value that is none of the names, and say which one may be meant.
 void acceptOnly(CLI::Option* option, const std::vector<std::string>& names);
 
-// Adds --version and parses. argument_mistakes.h names the mistakes. `conflict` then returns the reason why the options
-// contradict each other, or "". Returns true if the program goes on. Returns false if it must leave with `exitCode`,
-// after printing the help, the version, or one line on standard error.
+// Adds --version, --man-page and --completion, and parses. argument_mistakes.h names the mistakes. `conflict` then
+// returns the reason why the options contradict each other, or "". Returns true if the program goes on. Returns false
+// if it must leave with `exitCode`, after printing the help, the version, a page, or one line on standard error.
 bool parseArguments(CLI::App& app, int argc, const char* const* argv, const std::function<std::string()>& conflict,
                     int& exitCode);
 

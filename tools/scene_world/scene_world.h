@@ -1,18 +1,18 @@
 // A scene of cloth (scenes/cloth_scene.h) as a world of Bullet's, with Drape's collision or with Bullet's own.
 //
-// Cloth is soft bodies that collide with themselves and with each other; obstacles are kinematic triangle meshes.
-// Springs have their lengths from the cloth at rest. Held nodes have no mass.
+// Cloth is soft bodies, obstacles are kinematic or dynamic rigid bodies (scene_bodies.h).
 #pragma once
 
 #include <memory>
 #include <vector>
 
 #include <BulletSoftBody/btSoftRigidDynamicsWorld.h>
-#include <btBulletCollisionCommon.h>
-#include <btBulletDynamicsCommon.h>
 #include <drape/drape.h>
 
 #include "scenes/cloth_scene.h"
+#include "tools/scene_world/scene_bodies.h"
+#include "tools/scene_world/timed_solver.h"
+#include "tools/scene_world/timed_world.h"
 
 namespace drape
 {
@@ -24,22 +24,13 @@ enum class BulletCollision
     Clusters
 };
 
-struct SceneWorldOptions
-{
-    int m_iterations = 2;     // piterations; cloth in folds needs short steps more than iterations
-    double m_damping = 0.02;  // kDP
-    double m_friction = 0.6;  // kDF; the obstacles' coefficient is 1
-    double m_stiffness = 1;   // kLST of edges
-    double m_bending = 0.02;  // kLST of bending springs
-};
-
 class SceneWorld
 {
 public:
     // The scene and the plugin must outlive the world.
-    SceneWorld(const ClothScene& scene, Plugin& plugin, const SceneWorldOptions& options = {});
+    SceneWorld(const ClothScene& scene, Plugin& plugin);
     // Without Drape.
-    SceneWorld(const ClothScene& scene, BulletCollision collision, const SceneWorldOptions& options = {});
+    SceneWorld(const ClothScene& scene, BulletCollision collision);
     ~SceneWorld();
 
     // Moves what the scene moves to where it is after `dt` more seconds, and runs one step. Returns its wall time, ms.
@@ -48,8 +39,14 @@ public:
     // Gives held nodes their mass back: the scene moves them no more.
     void release();
 
-    btSoftRigidDynamicsWorld& world() { return m_world; }
+    TimedWorld& world() { return m_world; }
+    // Returns the time that the last step spent in Drape's solver, ms; 0 without Drape.
+    double solverMs() const { return m_timedSolver != nullptr ? m_timedSolver->ms() : 0; }
     btSoftBody& cloth(std::size_t index) { return *m_cloths[index]; }
+    const btSoftBody& cloth(std::size_t index) const { return *m_cloths[index]; }
+    std::size_t clothCount() const { return m_cloths.size(); }
+    // Returns where an obstacle is.
+    btTransform obstaclePose(std::size_t index) const { return m_obstacles[index].m_body->getWorldTransform(); }
     // Returns all cloths as one mesh, and their nodes where they are, x y z each, m.
     TriangleMesh mesh() const;
     const std::vector<float>& positions();
@@ -63,28 +60,22 @@ public:
     Stretch stretch() const;
 
 private:
-    struct Obstacle
-    {
-        std::unique_ptr<btTriangleIndexVertexArray> m_arrays;
-        std::unique_ptr<btBvhTriangleMeshShape> m_shape;
-        std::unique_ptr<btRigidBody> m_body;
-    };
-
     SceneWorld(const ClothScene& scene, std::unique_ptr<btCollisionConfiguration> configuration,
                std::unique_ptr<btSoftBodySolver> solver);
-    btSoftBody& addCloth(const SceneCloth& cloth, const SceneWorldOptions& options);
+    btSoftBody& addCloth(const SceneCloth& cloth);
     void addObstacle(const SceneObstacle& obstacle);
     void moveTo(double time);
 
     const ClothScene& m_scene;
     std::unique_ptr<btCollisionConfiguration> m_configuration;
     std::unique_ptr<btSoftBodySolver> m_solver;
+    TimedSolver* m_timedSolver = nullptr;  // m_solver with Drape
     btCollisionDispatcher m_dispatcher;
     btDbvtBroadphase m_broadphase;
     btSequentialImpulseConstraintSolver m_rigidSolver;
-    btSoftRigidDynamicsWorld m_world;
+    TimedWorld m_world;
     std::vector<std::unique_ptr<btSoftBody>> m_cloths;
-    std::vector<Obstacle> m_obstacles;
+    std::vector<ObstacleBody> m_obstacles;
     std::vector<float> m_positions;
     double m_time = 0;
     bool m_isReleased = false;
