@@ -214,6 +214,10 @@ public:
     {
         return dictOf(m_turn.run([&] { return m_world->plugin().device(); }));
     }
+    void awaitDevice()
+    {
+        m_turn.run([&] { m_world->plugin().awaitDevice(); });
+    }
     std::string report()
     {
         return m_turn.run([&] { return m_world->plugin().report(); });
@@ -287,6 +291,7 @@ void bindWorld(py::module_& module)
         .def("cloth_triangles", &PyWorld::clothTriangles)
         .def("statistics", &PyWorld::statistics)
         .def("device", &PyWorld::device)
+        .def("await_device", &PyWorld::awaitDevice)
         .def("report", &PyWorld::report)
         .def("diagnose", &PyWorld::diagnose)
         .def("device_error", &PyWorld::deviceError);

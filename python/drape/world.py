@@ -200,6 +200,10 @@ class ClothWorld:
         """Why the host took over from a device; "" if it did not."""
         return self._own.device_error()
 
+    def await_device(self) -> None:
+        """Waits until the start of a device in the background has ended, if there is one."""
+        self._own.await_device()
+
     def report(self) -> str:
         """Returns one line with the device, the reason for it, and the last step."""
         return self._own.report()

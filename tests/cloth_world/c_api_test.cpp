@@ -182,6 +182,7 @@ TEST(CApi, NullIsRefused)
     EXPECT_EQ(drapeWorldContacts(nullptr, nullptr, nullptr), DRAPE_BAD_INPUT);
     EXPECT_EQ(drapeWorldClothTriangles(nullptr, nullptr, nullptr), DRAPE_BAD_INPUT);
     EXPECT_EQ(drapeWorldDevice(nullptr, nullptr), DRAPE_BAD_INPUT);
+    EXPECT_EQ(drapeWorldAwaitDevice(nullptr), DRAPE_BAD_INPUT);
     EXPECT_STREQ(drapeWorldReport(nullptr), "");
     EXPECT_STREQ(drapeWorldDiagnose(nullptr), "");
     EXPECT_STREQ(drapeWorldDeviceError(nullptr), "");

@@ -106,7 +106,8 @@ static const char* stepWorld(DrapeWorld* world, int cloth, int obstacle)
     CHECK(strstr(drapeWorldReport(world), "Drape on host") != NULL);
     CHECK(strcmp(drapeWorldDiagnose(world), "") == 0 && strcmp(drapeWorldDeviceError(world), "") == 0);
     DrapeDeviceReport device;
-    CHECK(drapeWorldDevice(world, &device) == DRAPE_OK && device.m_onHost == 1);
+    CHECK(drapeWorldAwaitDevice(world) == DRAPE_OK);
+    CHECK(drapeWorldDevice(world, &device) == DRAPE_OK && device.m_onHost == 1 && device.m_isStarting == 0);
     return NULL;
 }
 

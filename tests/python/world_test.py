@@ -82,6 +82,7 @@ def test_cloth_rests_at_half_its_thickness_and_the_margin(world, sheet, plate):
     assert numpy.allclose(contacts["thickness"], 0.05)
     assert contacts["nodes"].shape == (len(contacts), 3)
     assert world.diagnose() == "" and world.device_error == ""
+    world.await_device()
     assert world.report().startswith("Drape on host")
     world.remove_mesh(below)
     for _ in range(30):

@@ -194,6 +194,13 @@ DrapeResult drapeWorldDevice(const DrapeWorld* world, DrapeDeviceReport* device)
     return DRAPE_OK;
 }
 
+DrapeResult drapeWorldAwaitDevice(DrapeWorld* world)
+{
+    if (!world) return refuseC("drapeWorldAwaitDevice", "the handle is null");
+    world->m_world->plugin().awaitDevice();
+    return DRAPE_OK;
+}
+
 const char* drapeWorldReport(const DrapeWorld* world)
 {
     static thread_local std::string t_text;

@@ -126,8 +126,8 @@ bool ClothGuard::isForced(const Guarded& pair)
     return false;
 }
 
-// Returns the feature of a forced pair that goes out of the way: 0, 1, or -1 if neither can. Beside held nodes it is the
-// other one. Of two features that are pushed, it is the one in front.
+// Returns the feature of a forced pair that goes out of the way: 0, 1, or -1 if neither can. Beside held nodes it is
+// the other one. Of two features that are pushed, it is the one in front.
 int ClothGuard::yielding(const Guarded& pair) const
 {
     const int split = pair.m_paths.m_split;

@@ -389,6 +389,8 @@ DRAPE_C_FUNCTION DrapeResult drapeWorldClothTriangles(DrapeWorld* world, const C
 
 // Describes the device in use. Texts are valid until the handle's next step. Errors: DRAPE_BAD_INPUT for null.
 DRAPE_C_FUNCTION DrapeResult drapeWorldDevice(const DrapeWorld* world, DrapeDeviceReport* device);
+// Waits until the start of a device in the background has ended, if there is one. Errors: DRAPE_BAD_INPUT for null.
+DRAPE_C_FUNCTION DrapeResult drapeWorldAwaitDevice(DrapeWorld* world);
 // Returns one line with the device, the reason for it and the last step. Valid until the thread's next call of this
 // function. "" for null.
 DRAPE_C_FUNCTION const char* drapeWorldReport(const DrapeWorld* world);

@@ -118,7 +118,7 @@ private:
     ClothParts m_parts;
     GroupClimb m_climb;
     std::vector<Row> m_rows, m_unordered;
-    std::vector<Kept> m_kept;             // of the last step, by key
+    std::vector<Kept> m_kept;             // sorted by key; the last step's
     float m_time = 0;                     // s, of the last phase's substep; 0: none
     std::vector<std::size_t> m_firsts;    // by group, the first of its rows; then the end
     std::vector<std::uint32_t> m_near;    // by group, from m_firsts on: rows that take part
