@@ -13,6 +13,9 @@ foreach(tool cloth_drop drape_check)
 endforeach()
 if(tools)
   install(TARGETS ${tools} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT tools)
+  install(FILES docs/scene_files.md docs/scene.schema.json DESTINATION ${CMAKE_INSTALL_DATADIR}/drape/docs
+    COMPONENT tools)
+  install(DIRECTORY examples/scenes DESTINATION ${CMAKE_INSTALL_DATADIR}/drape/examples COMPONENT tools)
 endif()
 # Nothing to link without the adapter.
 if(NOT DRAPE_WITH_BULLET)
@@ -21,7 +24,7 @@ endif()
 
 install(FILES README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT development)
 install(DIRECTORY docs/ DESTINATION ${CMAKE_INSTALL_DOCDIR}/docs COMPONENT development
-  FILES_MATCHING PATTERN "*.md" PATTERN "*.png")
+  FILES_MATCHING PATTERN "*.md" PATTERN "*.png" PATTERN "*.json")
 install(TARGETS drape drape_recorder EXPORT DrapeTargets
   RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT runtime
   LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT runtime NAMELINK_COMPONENT development

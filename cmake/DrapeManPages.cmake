@@ -15,15 +15,14 @@ function(drape_command_pages target)
   list(GET pages 1 bash)
   list(GET pages 2 zsh)
   list(GET pages 3 fish)
-  add_custom_command(OUTPUT ${pages}
+  # With the program itself, so that an install finds them whatever target was built.
+  add_custom_command(TARGET ${target} POST_BUILD BYPRODUCTS ${pages}
     COMMAND ${target} --man-page > ${man}
     COMMAND ${target} --completion bash > ${bash}
     COMMAND ${target} --completion zsh > ${zsh}
     COMMAND ${target} --completion fish > ${fish}
-    DEPENDS ${target}
     COMMENT "Making the man page and completions of ${target}"
     VERBATIM)
-  add_custom_target(${target}_pages ALL DEPENDS ${pages})
   if(DEFINED DRAPE_INSTALL AND NOT DRAPE_INSTALL)
     return()
   endif()

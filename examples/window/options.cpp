@@ -32,26 +32,29 @@ bool parse(int argc, const char* const* argv, Options& options, int& exitCode)
     CLI::App app("Shows cloth with Drape, or with Bullet's own collision, in a window.", "drape_window");
     std::vector<std::string> draws;
     std::string collision = "drape";
-    acceptOnly(app.add_option("--scene", options.m_scene, "Scene to start with; --list-scenes names them"),
+    acceptOnly(app.add_option("--scene", options.m_scene, "scene to start with; --list-scenes names them"),
                windowSceneNames());
-    app.add_flag("--list-scenes", options.m_listScenes, "Print the names of the scenes");
+    app.add_flag("--list-scenes", options.m_listScenes, "list the scenes and exit");
     acceptOnly(app.add_option("--collision", collision, "drape, or bullet for Bullet's own collision"),
                {"drape", "bullet"});
     acceptOnly(app.add_option("--draw", draws,
-                              "What to draw of the contacts: contacts, normals, gaps, patches, "
+                              "what to draw of the contacts: contacts, normals, gaps, patches, "
                               "flagged, impulses")
                    ->delimiter(','),
                drawNames());
-    app.add_option("--frames", options.m_frames, "End after this many frames, one step each")
+    app.add_option("--frames", options.m_frames, "end after this many frames, one step each")
         ->check(CLI::Validator(wholeNumber(1, 1000000), ""));
-    app.add_option("--screenshot", options.m_screenshot, "PNG file of the last frame; needs --frames");
+    app.add_option("--screenshot", options.m_screenshot, "PNG file of the last frame; needs --frames")
+        ->type_name("FILE");
     const CLI::Validator width(wholeNumber(320, 7680), ""), height(wholeNumber(240, 4320), "");
-    app.add_option("--width", options.m_width, "Width of the window in pixels")->check(width);
-    app.add_option("--height", options.m_height, "Height of the window in pixels")->check(height);
-    app.add_option("--detail", options.m_detail, "Fineness of the cloth")->check(CLI::Validator(wholeNumber(1, 8), ""));
-    acceptOnly(app.add_option("--backend", options.m_backend, "auto, opencl or host"), {"auto", "opencl", "host"});
-    app.add_option("--device", options.m_device, "Part of an OpenCL device's name");
-    app.add_option("--models", options.m_models, "Folder with bunny.obj");
+    app.add_option("--width", options.m_width, "width of the window, pixels")->check(width);
+    app.add_option("--height", options.m_height, "height of the window, pixels")->check(height);
+    app.add_option("--detail", options.m_detail, "fineness of the cloth, 1 to 8")
+        ->check(CLI::Validator(wholeNumber(1, 8), ""));
+    acceptOnly(app.add_option("--backend", options.m_backend, "auto, opencl, host or cost, as in cloth_drop"),
+               {"auto", "opencl", "host", "cost"});
+    app.add_option("--device", options.m_device, "part of an OpenCL device's name");
+    app.add_option("--models", options.m_models, "folder with bunny.obj")->type_name("DIR");
     const auto conflict = [&]
     {
         const bool endless = !options.m_screenshot.empty() && options.m_frames == 0;
@@ -62,7 +65,6 @@ bool parse(int argc, const char* const* argv, Options& options, int& exitCode)
     for (const NamedDraw& draw : kDraws)
         for (const std::string& name : draws)
             if (name == draw.m_name) options.m_draws |= draw.m_flag;
-    if (options.m_draws & kDrawImpulses) options.m_draws |= kDrawNormals;
     return true;
 }
 }  // namespace drape::window

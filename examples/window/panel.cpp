@@ -65,8 +65,7 @@ void drawShown(Choices& choices)
     ImGui::CheckboxFlags("normals", &choices.m_draws, kDrawNormals);
     ImGui::CheckboxFlags("gaps", &choices.m_draws, kDrawGaps);
     ImGui::SameLine(150);
-    if (ImGui::CheckboxFlags("impulses", &choices.m_draws, kDrawImpulses) && (choices.m_draws & kDrawImpulses))
-        choices.m_draws |= kDrawNormals;
+    ImGui::CheckboxFlags("impulses", &choices.m_draws, kDrawImpulses);
     ImGui::CheckboxFlags("patches", &choices.m_draws, kDrawPatches);
     ImGui::SameLine(150);
     ImGui::CheckboxFlags("flagged pairs", &choices.m_draws, kDrawFlagged);

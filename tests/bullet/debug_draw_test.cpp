@@ -102,7 +102,7 @@ TEST_F(DebugDraw, ShowsImpulsesIfTheyAreRecorded)
     m_world.step();
     const std::vector<StepContact>& contacts = m_plugin.stepContacts();
     const auto pushed = [](const StepContact& contact) { return contact.m_normalImpulse > 0; };
-    const std::vector<DrawnLine> lines = linesOf(m_plugin, kDrawNormals | kDrawImpulses);
+    const std::vector<DrawnLine> lines = linesOf(m_plugin, kDrawImpulses);
     EXPECT_EQ(lines.size(), std::size_t(std::count_if(contacts.begin(), contacts.end(), pushed)));
     btScalar longest = 0;
     for (const DrawnLine& line : lines)

@@ -172,6 +172,84 @@ TEST(SelfCollision, AStackOfTenSheetsStays)
     EXPECT_LT(creepOfStack(10, 300), 1e-4);
 }
 
+// The rows' substeps are those of their own cloths.
+TEST(SelfCollision, ALoneSheetWithFewSubstepsChangesNothing)
+{
+    std::vector<std::vector<float>> ends;
+    for (const bool hasOther : {false, true})
+    {
+        MeshShape box(makeBox(4, 1, 4));
+        Plugin plugin(hostSettings());
+        DropWorld world(&plugin);
+        world.addObstacle(box.shape());
+        ClothSpec spec;
+        spec.m_nodes = 13;
+        btSoftBody* other = nullptr;
+        if (hasOther)
+        {
+            spec.m_centre = btVector3(btScalar(1.3), btScalar(0.53), btScalar(1.3));
+            other = &world.addCloth(spec);
+            other->m_cfg.piterations = 1;
+        }
+        std::vector<float> positions;
+        std::vector<const btSoftBody*> layers;
+        for (int k = 0; k < 2; ++k)
+        {
+            spec.m_centre = btVector3(btScalar(-1.3), btScalar(0.53 + 0.022 * k), btScalar(-1.3));
+            layers.push_back(&world.addCloth(spec));
+            plugin.setSelfCollision(*layers.back(), true);
+        }
+        world.step(60);
+        for (const btSoftBody* layer : layers)
+        {
+            const std::vector<float> own = positionsOf(*layer);
+            positions.insert(positions.end(), own.begin(), own.end());
+        }
+        ends.push_back(positions);
+    }
+    EXPECT_EQ(ends[0], ends[1]);
+}
+
+// Switched on again after its nodes have moved together, a cloth takes these places for its rest.
+TEST(SelfCollision, SwitchedOnAgainItTakesTheNewRest)
+{
+    std::vector<std::vector<float>> ends;
+    for (const bool before : {false, true})
+    {
+        Plugin plugin(hostSettings());
+        DropWorld world(&plugin);
+        ClothSpec spec;
+        spec.m_nodes = 13;
+        btSoftBody& cloth = world.addCloth(spec);
+        world.world().setGravity(btVector3(0, 0, 0));
+        world.world().getWorldInfo().m_gravity.setZero();
+        if (before)
+        {
+            plugin.setSelfCollision(cloth, true);
+            world.step(2);
+            plugin.setSelfCollision(cloth, false);
+        }
+        else
+            world.step(2);
+        for (int i = 0; i < cloth.m_nodes.size(); ++i)
+        {
+            btSoftBody::Node& node = cloth.m_nodes[i];
+            node.m_x = node.m_q = node.m_x * btScalar(0.2);
+        }
+        cloth.updateLinkConstants();
+        for (int i = 0; i < cloth.m_links.size(); ++i)
+        {
+            btSoftBody::Link& link = cloth.m_links[i];
+            link.m_rl *= btScalar(0.2);
+            link.m_c1 = link.m_rl * link.m_rl;
+        }
+        plugin.setSelfCollision(cloth, true);
+        world.step(5);
+        ends.push_back(positionsOf(cloth));
+    }
+    EXPECT_EQ(ends[0], ends[1]);
+}
+
 TEST(SelfCollision, SheetsSideBySideFallFreely)
 {
     Layers layers(hostSettings(), 2, 0.001f, false);
@@ -263,6 +341,37 @@ TEST(SelfCollision, APinnedSheetThatTheAppMovesCarriesAnotherAlong)
         }
         EXPECT_GT(lowestOf(free), pinned.m_nodes[0].m_x.y()) << share;
     }
+}
+
+// A pinned sheet presses another one against a box. Cloth elsewhere falls on, and the pairs are flagged.
+TEST(SelfCollision, APinnedSheetThatLeavesNoRoomIsFlaggedAndStopsNobodyElse)
+{
+    MeshShape box(makeBox(4, 1, 4));
+    Layers layers(hostSettings(), 2, 0.03f);
+    layers.m_world.addObstacle(box.shape());
+    ClothSpec spec;
+    spec.m_nodes = 5;
+    spec.m_centre = btVector3(30, 50, 0);
+    btSoftBody& falling = layers.m_world.addCloth(spec);
+    layers.m_plugin.setSelfCollision(falling, true);
+    btSoftBody& pinned = *layers.m_cloths[1];
+    for (int i = 0; i < pinned.m_nodes.size(); ++i)
+        pinned.setMass(i, 0);
+    layers.m_world.step();
+    bool flagged = false;
+    double height = lowestOf(falling);
+    for (int step = 0; step < 90; ++step)
+    {
+        for (int i = 0; i < pinned.m_nodes.size(); ++i)
+            pinned.m_nodes[i].m_x -= btVector3(0, btScalar(0.002), 0);
+        layers.m_world.step();
+        flagged = flagged ||
+                  (layers.m_plugin.statistics().m_clothPairsMeeting > 0 && !layers.m_plugin.flaggedPairs().empty());
+        ASSERT_LT(lowestOf(falling), height) << step;
+        height = lowestOf(falling);
+    }
+    EXPECT_LT(pinned.m_nodes[0].m_x.y(), 0.5);
+    EXPECT_TRUE(flagged);
 }
 
 // Rows that recover the whole depth in one step make cloth in many folds fly apart.

@@ -181,6 +181,28 @@ TEST_F(ClothWorldTest, ClothRestsAtHalfItsThicknessAndTheMargin)
     EXPECT_LT(meanHeight(own), -0.5);
 }
 
+// Queries after a step must not touch bodies that have been removed since.
+TEST_F(ClothWorldTest, ContactsOfWhatWasRemovedAreLeftOut)
+{
+    const int first = add(describeCloth(m_sheet)), below = add(describeObstacle(m_plate));
+    m_world->plugin().recordContacts(true);
+    steps(90);
+    std::vector<ClothStepContact> records;
+    std::vector<ClothContact> contacts;
+    ASSERT_TRUE(m_world->stepContacts(records) && m_world->contacts(contacts));
+    ASSERT_FALSE(records.empty() || contacts.empty());
+    ASSERT_TRUE(m_world->removeCloth(first));
+    add(describeCloth(m_sheet));  // perhaps at the same address
+    ASSERT_TRUE(m_world->stepContacts(records) && m_world->contacts(contacts));
+    EXPECT_TRUE(records.empty() && contacts.empty());
+    steps(90);
+    ASSERT_TRUE(m_world->stepContacts(records));
+    ASSERT_FALSE(records.empty());
+    ASSERT_TRUE(m_world->removeObstacle(below));
+    ASSERT_TRUE(m_world->stepContacts(records) && m_world->contacts(contacts));
+    EXPECT_TRUE(records.empty() && contacts.empty());
+}
+
 TEST_F(ClothWorldTest, RecordedImpulsesCarryTheCloth)
 {
     ClothDescription cloth = describeCloth(m_sheet);

@@ -1,6 +1,8 @@
 // Scene files: what they say happens, mistakes are named, and built-in scenes are the same as files.
 #include <gtest/gtest.h>
 
+#include <filesystem>
+
 #include <nlohmann/json.hpp>
 
 #include "tests/tools/tool.h"
@@ -230,16 +232,32 @@ TEST_F(SceneFiles, OptionsAndNamesAreChecked)
         EXPECT_NE(materials.m_out.find(name + " "), std::string::npos) << name;
 }
 
+// A scene that somebody else made writes nowhere but below the working folder, and over no mesh that it reads.
+TEST_F(SceneFiles, WriteOnlyBelowTheWorkingFolder)
+{
+    for (const std::string& outside : {path("out.csv"), std::string("a/../../out.csv")})
+    {
+        const std::string scene =
+            write("scene.json", sceneWith(sheetWith(""), R"(, "recording": {"csv": ")" + outside + R"("})"));
+        expectRefused(run({"--scene", scene}), {"/recording/csv: expected a path below the working folder"});
+    }
+    const std::string mesh = write("sheet.obj", "v 0 0 0\nv 1 0 0\nv 0 0 1\nf 1 2 3\n");
+    expectRefused(run({"--obstacle", mesh, "--write-scene", mesh}), {"--write-scene would write over the mesh"});
+    EXPECT_NE(readAll(mesh).find("f 1 2 3"), std::string::npos);
+}
+
 // Bullet's own collision runs the same scene in a child, and outputs named in the file are written.
 TEST_F(SceneFiles, RunsAreComparedAndRecorded)
 {
     const std::string scene = write(
         "scene.json", sceneWith(sheetWith(R"(, "name": "sheet", "position": [0, 0.2, 0])"),
                                 R"(, "obstacles": [{"name": "block", "shape": {"type": "box", "size": [0.5, 0.1, 0.5]},
-                       "motion": {"velocity": [0, 1, 0]}}], "recording": {"json": ")" +
-                                    path("summary.json") + R"(", "point_cache": ")" + path("cache") +
-                                    R"(", "frames": ")" + path("frames") + R"("})"));
+                       "motion": {"velocity": [0, 1, 0]}}],
+                       "recording": {"json": "summary.json", "point_cache": "cache", "frames": "frames"})"));
+    const std::filesystem::path before = std::filesystem::current_path();
+    std::filesystem::current_path(path("."));
     const ToolRun result = run({"--scene", scene, "--backend", "host", "--compare", "--quiet"});
+    std::filesystem::current_path(before);
     ASSERT_EQ(result.m_exitCode, 0) << result.m_err;
     const auto summary = nlohmann::json::parse(readAll(path("summary.json")));
     for (const char* name : {"drape", "bullet_stock", "bullet_tuned"})

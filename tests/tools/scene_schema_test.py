@@ -96,6 +96,7 @@ BAD = [
     {**SCENE, "obstacles": [{"shape": {"type": "plane"}, "mass": 1}]},
     {"cloths": [{"shape": TRIANGLE, "positions": [0] * 9, "position": [0, 0, 0]}]},
     changed("recording", {"video": "a"}), changed("recording", {"csv": 1}),
+    changed("recording", {"csv": "/tmp/out.csv"}), changed("recording", {"replay": "a/../../b.html"}),
 ]
 
 

@@ -210,6 +210,11 @@ int writeSceneOf(const Options& options)
     if (!makeSceneOf(options, file, error)) return fail(kExitBadInput, error);
     if (isSceneFile(options.m_scene) && areOneFile(options.m_scene, options.m_writeScene))
         return fail(kExitBadInput, "--write-scene would write over the file of --scene, " + options.m_scene);
+    std::vector<std::string> read = file.m_meshes;
+    read.push_back(options.m_obstacle);
+    for (const std::string& mesh : read)
+        if (areOneFile(mesh, options.m_writeScene))
+            return fail(kExitBadInput, "--write-scene would write over the mesh " + mesh);
     return writeScene(options.m_writeScene, file, error) ? kExitGood : fail(kExitFailed, error);
 }
 

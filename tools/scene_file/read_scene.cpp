@@ -1,5 +1,6 @@
 #include "tools/scene_file/read_scene.h"
 
+#include <algorithm>
 #include <filesystem>
 
 #include "mesh_io/read_file.h"
@@ -36,17 +37,26 @@ void readWind(const JsonValue& value, ClothScene& scene)
     scene.m_wind = wind;
 }
 
+// Reads the path of a file to write. A scene that somebody else made writes nowhere but below the working folder.
+void readOutput(const JsonObject& object, const char* key, std::string& path)
+{
+    object.read(key, path);
+    const std::filesystem::path given(path);
+    if (given.is_absolute() || std::find(given.begin(), given.end(), "..") != given.end())
+        object.at(key).refuse("a path below the working folder");
+}
+
 void readOutputs(const JsonValue& value, SceneOutputs& outputs)
 {
     const JsonObject object(value, {"csv", "json", "frames", "picture", "replay", "animation", "point_cache", "gltf"});
-    object.read("csv", outputs.m_csv);
-    object.read("json", outputs.m_json);
-    object.read("frames", outputs.m_frames);
-    object.read("picture", outputs.m_picture);
-    object.read("replay", outputs.m_replay);
-    object.read("animation", outputs.m_animation);
-    object.read("point_cache", outputs.m_pointCache);
-    object.read("gltf", outputs.m_gltf);
+    readOutput(object, "csv", outputs.m_csv);
+    readOutput(object, "json", outputs.m_json);
+    readOutput(object, "frames", outputs.m_frames);
+    readOutput(object, "picture", outputs.m_picture);
+    readOutput(object, "replay", outputs.m_replay);
+    readOutput(object, "animation", outputs.m_animation);
+    readOutput(object, "point_cache", outputs.m_pointCache);
+    readOutput(object, "gltf", outputs.m_gltf);
 }
 
 void readBodies(const JsonObject& object, SceneContext& context, ClothScene& scene)

@@ -104,7 +104,7 @@ double SceneWorld::step(double dt)
     m_time += dt;
     moveTo(m_time);
     for (const std::unique_ptr<btSoftBody>& cloth : m_cloths)
-        if (m_scene.m_wind) addWind(*cloth, *m_scene.m_wind, dt);
+        if (m_scene.m_wind && cloth->isActive()) addWind(*cloth, *m_scene.m_wind, dt);
     const auto start = std::chrono::steady_clock::now();
     m_world.stepSimulation(btScalar(dt), 1, btScalar(dt));
     return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();

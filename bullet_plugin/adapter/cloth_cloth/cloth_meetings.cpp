@@ -347,7 +347,7 @@ bool ClothMeetings::isPushed(std::size_t node) const
     return !all.empty() && (all[3 * node] != 0 || all[3 * node + 1] != 0 || all[3 * node + 2] != 0);
 }
 
-const std::vector<btSoftBody*>& ClothMeetings::guard()
+const std::vector<btSoftBody*>& ClothMeetings::guard(bool carries)
 {
     m_moved.clear();
     const auto write = [&](const Member& member, const btSoftBody::Node& node, std::size_t index)
@@ -361,7 +361,7 @@ const std::vector<btSoftBody*>& ClothMeetings::guard()
     pushApart();
     const GuardResult result = m_guard.apply(
         m_set, m_isHeld, [this](const std::uint32_t* nodes) { return isGuarded(nodes); },
-        m_state.settings().m_candidateLimit, m_state.threads());
+        m_state.settings().m_candidateLimit, m_state.threads(), carries);
     m_ends.clear();
     if (m_meeting.empty() && result.m_startMeeting == 0 && result.m_forced == 0)
         m_ends.assign(m_set.end(), m_set.end() + 3 * m_set.nodeCount());

@@ -37,8 +37,8 @@ public:
     bool hasRows(const SolverNodes& nodes) const;
     // Brings triangles that started the step intersecting apart a little, in the step's first call. Then shortens the
     // way of Bullet's nodes from their starts (m_q) to where they are (m_x). Lists the bodies with nodes that were
-    // moved. Adds to the statistics.
-    const std::vector<btSoftBody*>& guard();
+    // moved. Adds to the statistics. carries: held nodes carry other cloth along.
+    const std::vector<btSoftBody*>& guard(bool carries);
     // Adds the contacts of find() with what the solver's rows gave.
     void record(ContactRecords& records) const;
     // Puts all free nodes back to their starts, at rest.

@@ -22,8 +22,15 @@ void SelfCollision::set(const btSoftBody& body, btScalar thickness)
     SelfColliding self;
     self.m_thickness = thickness;
     self.m_isAsked = true;
+    self.m_revision = ++m_lastRevision;
     readRest(body, self.m_rest);
     m_bodies[&body] = std::move(self);
+}
+
+void SelfCollision::startAnew(const btCollisionObject& object)
+{
+    for (auto& entry : m_bodies)
+        if (entry.first == &object) entry.second.m_revision = ++m_lastRevision;
 }
 
 const SelfColliding* SelfCollision::find(const btSoftBody& body)
@@ -43,7 +50,7 @@ const SelfColliding* SelfCollision::find(const btSoftBody& body)
         const int proxy = body.getBroadphaseHandle() ? body.getBroadphaseHandle()->m_uniqueId : 0;
         if (found->second.m_proxy != proxy)
         {
-            ++found->second.m_revision;
+            found->second.m_revision = ++m_lastRevision;
             found->second.m_rest.clear();
             found->second.m_proxy = proxy;
         }
@@ -51,7 +58,10 @@ const SelfColliding* SelfCollision::find(const btSoftBody& body)
         found->second.m_meetsOthers = meetsOthers;
     }
     if (found->second.m_rest.size() != 3 * static_cast<std::size_t>(body.m_nodes.size()))
+    {
+        found->second.m_revision = ++m_lastRevision;
         readRest(body, found->second.m_rest);
+    }
     return &found->second;
 }
 

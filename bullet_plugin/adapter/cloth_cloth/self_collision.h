@@ -18,7 +18,7 @@ struct SelfColliding
     bool m_meetsItself = true;  // it collides with itself
     bool m_meetsOthers = true;  // it collides with other bodies for which this is true
     int m_proxy = 0;            // identifies the body in its world; another one may get its address
-    int m_revision = 0;         // counts up when m_rest becomes another body's
+    int m_revision = 0;         // another one, of all bodies, when m_rest changes or the body is put elsewhere
     std::vector<float> m_rest;  // x y z per node, m, where the nodes were when it was switched on
 };
 
@@ -30,6 +30,8 @@ public:
 
     void set(const btSoftBody& body, btScalar thickness);
     void clear(const btSoftBody& body) { m_bodies.erase(&body); }
+    // Forgets where the body was after the last step, if it is one of these.
+    void startAnew(const btCollisionObject& object);
     // Returns null if the body collides neither with itself nor with others. Takes new positions at rest if it got
     // other nodes.
     const SelfColliding* find(const btSoftBody& body);
@@ -40,6 +42,7 @@ public:
 
 private:
     bool m_heedsFlags;
+    int m_lastRevision = 0;
     std::unordered_map<const btSoftBody*, SelfColliding> m_bodies;
 };
 }  // namespace drape

@@ -67,6 +67,7 @@ void ClothWorld::Implementation::removeCloth(WorldCloth& cloth)
     m_world.removeSoftBody(cloth.m_body.get());
     m_plugin.setSelfCollision(*cloth.m_body, false);
     m_plugin.release(cloth.m_body.get());
+    m_stepped.erase(cloth.m_body.get());
     cloth = WorldCloth();
 }
 
@@ -75,7 +76,23 @@ void ClothWorld::Implementation::removeObstacle(std::unique_ptr<ObstacleBody>& o
     m_world.removeRigidBody(&obstacle->body());
     m_plugin.setOneSided(&obstacle->shape(), false);
     m_plugin.release(&obstacle->body());
+    m_stepped.erase(&obstacle->body());
     obstacle.reset();
+}
+
+int ClothWorld::Implementation::indexOf(const btCollisionObject* body) const
+{
+    const auto found = m_stepped.find(body);
+    return found == m_stepped.end() ? -1 : found->second;
+}
+
+void ClothWorld::Implementation::noteBodies()
+{
+    m_stepped.clear();
+    for (const WorldCloth& cloth : m_cloths)
+        if (cloth.m_body) m_stepped[cloth.m_body.get()] = cloth.m_body->getUserIndex();
+    for (const std::unique_ptr<ObstacleBody>& obstacle : m_obstacles)
+        if (obstacle) m_stepped[&obstacle->body()] = obstacle->body().getUserIndex();
 }
 
 ClothDescription defaultCloth()
@@ -227,6 +244,7 @@ bool ClothWorld::step(double dt)
                                     [&]
                                     {
                                         requireNumber(dt, 1e-9, 1e9, "dt should be above 0, s");
+                                        m_implementation->noteBodies();
                                         // Without substeps: Bullet takes one step of this length.
                                         m_implementation->m_world.stepSimulation(btScalar(dt), 0);
                                         return true;

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <string>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -60,6 +61,10 @@ struct ClothWorld::Implementation
     int addObstacle(const ObstacleDescription& description);
     void removeCloth(WorldCloth& cloth);
     void removeObstacle(std::unique_ptr<ObstacleBody>& obstacle);
+    // Returns the index of a body of the last step that is still there, else -1. The body may have been deleted.
+    int indexOf(const btCollisionObject* body) const;
+    // Notes the bodies of the coming step.
+    void noteBodies();
 
     Plugin m_plugin;
     CollisionConfiguration m_configuration;
@@ -68,8 +73,9 @@ struct ClothWorld::Implementation
     btDbvtBroadphase m_broadphase;
     btSequentialImpulseConstraintSolver m_rigidSolver;
     btSoftRigidDynamicsWorld m_world;
-    std::vector<WorldCloth> m_cloths;                        // without a body once removed
-    std::vector<std::unique_ptr<ObstacleBody>> m_obstacles;  // null once removed
+    std::vector<WorldCloth> m_cloths;                             // without a body once removed
+    std::vector<std::unique_ptr<ObstacleBody>> m_obstacles;       // null once removed
+    std::unordered_map<const btCollisionObject*, int> m_stepped;  // see indexOf()
     Error m_error;
 };
 }  // namespace drape

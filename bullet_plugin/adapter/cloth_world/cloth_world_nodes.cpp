@@ -12,11 +12,6 @@ btVector3 vectorAt(const float* values, std::size_t index)
 {
     return btVector3(values[3 * index], values[3 * index + 1], values[3 * index + 2]);
 }
-
-int indexOf(const btCollisionObject* object)
-{
-    return object ? object->getUserIndex() : -1;
-}
 }  // namespace
 
 bool ClothWorld::setPinned(int cloth, const std::int32_t* nodes, std::size_t count, bool pinned)
@@ -124,8 +119,9 @@ bool ClothWorld::contacts(std::vector<ClothContact>& found) const
                                         for (const ContactInfo& contact : contacts)
                                         {
                                             ClothContact own = {};
-                                            own.m_cloth = indexOf(contact.m_cloth);
-                                            own.m_obstacle = indexOf(contact.m_obstacle);
+                                            own.m_cloth = m_implementation->indexOf(contact.m_cloth);
+                                            own.m_obstacle = m_implementation->indexOf(contact.m_obstacle);
+                                            if (own.m_cloth < 0 || own.m_obstacle < 0) continue;
                                             for (int i = 0; i < 3; ++i)
                                             {
                                                 own.m_nodes[i] = contact.m_nodes[i];
@@ -143,13 +139,13 @@ bool ClothWorld::contacts(std::vector<ClothContact>& found) const
 
 bool ClothWorld::stepContacts(std::vector<ClothStepContact>& found) const
 {
-    const auto recordOf = [](const StepContact& contact)
+    const auto recordOf = [&self = *m_implementation](const StepContact& contact)
     {
         ClothStepContact own = {};
-        own.m_cloth = indexOf(contact.m_cloth.m_body);
-        own.m_obstacle = contact.m_other.m_body ? -1 : indexOf(contact.m_object);
+        own.m_cloth = self.indexOf(contact.m_cloth.m_body);
+        own.m_obstacle = contact.m_other.m_body ? -1 : self.indexOf(contact.m_object);
         own.m_triangle = contact.m_triangle;
-        own.m_other = contact.m_other.m_body ? indexOf(contact.m_other.m_body) : -1;
+        own.m_other = contact.m_other.m_body ? self.indexOf(contact.m_other.m_body) : -1;
         for (int i = 0; i < 3; ++i)
         {
             own.m_nodes[i] = contact.m_cloth.m_nodes[i];
@@ -170,7 +166,11 @@ bool ClothWorld::stepContacts(std::vector<ClothStepContact>& found) const
                                     {
                                         found.clear();
                                         for (const StepContact& contact : m_implementation->state().m_records.list())
-                                            found.push_back(recordOf(contact));
+                                        {
+                                            const ClothStepContact own = recordOf(contact);
+                                            if (own.m_cloth >= 0 && std::max(own.m_obstacle, own.m_other) >= 0)
+                                                found.push_back(own);
+                                        }
                                         return true;
                                     });
 }
@@ -186,11 +186,11 @@ bool ClothWorld::clothTriangles(std::vector<ClothTriangles>& found) const
                                             ClothTriangles own = {};
                                             for (int side = 0; side < 2; ++side)
                                             {
-                                                own.m_cloths[side] = indexOf(pair.m_bodies[side]);
+                                                own.m_cloths[side] = m_implementation->indexOf(pair.m_bodies[side]);
                                                 std::copy(pair.m_nodes[side], pair.m_nodes[side] + 3,
                                                           own.m_nodes[side]);
                                             }
-                                            found.push_back(own);
+                                            if (std::min(own.m_cloths[0], own.m_cloths[1]) >= 0) found.push_back(own);
                                         }
                                         return true;
                                     });

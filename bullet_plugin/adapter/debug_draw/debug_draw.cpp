@@ -90,7 +90,7 @@ void addContact(const DrawnContact& contact, unsigned flags, const DebugDrawOpti
         lines.push_back({contact.m_point - arm, contact.m_point + arm, colour});
     }
     if (flags & kDrawGaps) lines.push_back({contact.m_point, contact.m_cloth, colour});
-    if (!(flags & kDrawNormals)) return;
+    if (!(flags & (kDrawNormals | kDrawImpulses))) return;
     const bool byImpulse = (flags & kDrawImpulses) != 0;
     const btVector3 direction =
         byImpulse ? contact.m_impulse / btMax(mostImpulse, btScalar(SIMD_EPSILON)) : contact.m_normal;
@@ -134,7 +134,7 @@ std::vector<Line> linesOf(const PluginState& state, unsigned flags, const DebugD
     if (flags & kDrawPatches)
         for (const DrawnTriangle& triangle : nearTriangles(state))
             addEdges(triangle.data(), 3, kPatch, lines);
-    if (flags & (kDrawContacts | kDrawNormals | kDrawGaps))
+    if (flags & (kDrawContacts | kDrawNormals | kDrawGaps | kDrawImpulses))
     {
         const std::vector<DrawnContact> contacts = contactsOf(state);
         btScalar most = 0;

@@ -18,8 +18,9 @@ namespace
 {
 // Passes of the guard after which obstacles push cloth back to its distance from them, and the maximum of all passes.
 // In between, nodes that guard and obstacles push to and fro only stop earlier on their way. After the last pass all
-// cloths of the step stand still.
-constexpr int kClosedGuardRounds = 2, kMostGuardRounds = 8;
+// cloths of the step stand still. Held nodes carry cloth in the first passes alone: where an obstacle leaves no room,
+// they go through it, and the pairs are flagged.
+constexpr int kClosedGuardRounds = 2, kCarryingGuardRounds = 4, kMostGuardRounds = 8;
 
 // Returns the number of elements that the step's memory is proportional to.
 std::size_t elementsOf(const StepStatistics& step)
@@ -175,7 +176,7 @@ void SoftBodySolver::Work::guardMeetings()
     for (int round = 1;; ++round)
     {
         bool isBesideMesh = false;
-        for (btSoftBody* body : m_meetings.guard())
+        for (btSoftBody* body : m_meetings.guard(round <= kCarryingGuardRounds))
         {
             if (!contactsOf(*body)) continue;
             m_step->watch(*body);

@@ -297,6 +297,7 @@ void PluginState::teleported(const btCollisionObject* object)
         motions.second.teleported(*object);
     for (auto& entry : m_obstacles)
         if (entry.first.m_object == object) entry.second.teleport();
+    m_selfCollision.startAnew(*object);
     startAnew(object);
 }
 

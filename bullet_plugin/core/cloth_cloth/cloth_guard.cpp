@@ -185,7 +185,7 @@ bool ClothGuard::carryForced()
 }
 
 GuardResult ClothGuard::apply(ClothSet& set, const std::vector<unsigned char>& isHeld, const IsGuarded& isGuarded,
-                              std::uint64_t limit, ThreadTeam& threads)
+                              std::uint64_t limit, ThreadTeam& threads, bool mayCarry)
 {
     const std::vector<float> ends(set.end(), set.end() + 3 * set.nodeCount());
     const auto restart = [&]
@@ -197,7 +197,6 @@ GuardResult ClothGuard::apply(ClothSet& set, const std::vector<unsigned char>& i
     m_isHeld = &isHeld;
     restart();
     set.allowSmooth();
-    bool mayCarry = true;
     std::size_t forcedAtFirst = 0;
     for (int carries = 0;;)
     {

@@ -43,9 +43,10 @@ class ClothGuard
 public:
     // Returns whether the guard keeps two features with these four nodes of the set apart.
     using IsGuarded = std::function<bool(const std::uint32_t*)>;
-    // isHeld: by node of the set; held nodes go where they go. isGuarded: null if all are.
+    // isHeld: by node of the set; held nodes go where they go. isGuarded: null if all are. mayCarry:
+    // held nodes may carry others along.
     GuardResult apply(ClothSet& set, const std::vector<unsigned char>& isHeld, const IsGuarded& isGuarded,
-                      std::uint64_t limit, ThreadTeam& threads);
+                      std::uint64_t limit, ThreadTeam& threads, bool mayCarry = true);
     // Returns the share of its path that each node went in the last apply().
     const std::vector<double>& shares() const { return m_shares; }
     // Calls visit(nodes, split, isForced) for each pair that the last result counts as forced, or else as meeting at

@@ -34,7 +34,7 @@ int iterationsOf(const SolverCloth& cloth)
 // Returns the share of the step that has passed after an iteration, for what constraints ask.
 float passedAfter(const SolverCloth& cloth, int iteration)
 {
-    return cloth.m_substeps ? float(iteration + 1) / float(cloth.m_substeps->count()) : 1.0f;
+    return cloth.m_substeps ? std::min(1.0f, float(iteration + 1) / float(cloth.m_substeps->count())) : 1.0f;
 }
 
 // Returns the time of the cloth's substeps, s; 0 if it has none.
@@ -193,14 +193,27 @@ void StepSolver::sweepInTurns()
     }
 }
 
+// Returns the first cloth with rows of cloth with cloth. Its substeps stand for those of all of them.
+const SolverCloth& StepSolver::firstWithRows() const
+{
+    const auto meets = [](const ContactSweep* sweep) { return sweep->cloth().m_meetsCloth; };
+    const auto first = std::find_if(m_all.begin(), m_all.end(), meets);
+    return (first == m_all.end() ? m_all.front() : *first)->cloth();
+}
+
 // Returns the velocity that rows of cloth with cloth give per metre in a substep, or after the last one, 1/s. The
 // cloths may differ; it is the first one's.
 float StepSolver::perPushOfRows(bool closing) const
 {
-    const auto meets = [](const ContactSweep* sweep) { return sweep->cloth().m_meetsCloth; };
-    const auto first = std::find_if(m_all.begin(), m_all.end(), meets);
-    if (first == m_all.end()) return 0;
-    return closing ? perShift((*first)->contacts()) : 1 / (*first)->cloth().m_substeps->correctionTime();
+    if (m_all.empty()) return 0;
+    const SolverCloth& first = firstWithRows();
+    return closing || !first.m_substeps ? perShift(*first.m_contacts) : 1 / first.m_substeps->correctionTime();
+}
+
+void StepSolver::beginRows(int iteration)
+{
+    const SolverCloth& first = firstWithRows();
+    m_rows->begin(passedAfter(first, iteration), substepTime(first), perPushOfRows(false));
 }
 
 // Projects rows of cloth with cloth until they hold, or kClosingRowSweeps times. Contacts with obstacles follow.
@@ -233,8 +246,7 @@ void StepSolver::sweepContacts(int iteration)
     m_team.forCloths(m_turn, boundShifts);
     select(m_iterating, m_turn, [](const ContactSweep* sweep) { return hasContacts(sweep) || sweep->cloth().m_rigid; });
     restart(iteration);
-    const SolverCloth& first = m_all.front()->cloth();
-    if (m_rows) m_rows->begin(passedAfter(first, iteration), substepTime(first), perPushOfRows(false));
+    if (m_rows) beginRows(iteration);
     sweepInTurns();
     forRigid(m_iterating, [](RigidRows& rigid) { rigid.end(); });
     select(m_iterating, m_turn, isCallers);

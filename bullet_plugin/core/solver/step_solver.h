@@ -113,7 +113,9 @@ private:
     void sweepContacts(int iteration);
     void restart(int iteration);
     void sweepInTurns();
+    const SolverCloth& firstWithRows() const;
     float perPushOfRows(bool closing) const;
+    void beginRows(int iteration);
     void closeRows();
     void endIteration(int iteration);
     void iterate();

@@ -84,7 +84,8 @@ public:
     bool nodes(int cloth, NodeView& view) const;
     // Copies a cloth's nodes to the caller's arrays, as float.
     bool copyNodes(int cloth, const NodeArrays& arrays) const;
-    // Replaces `found` by the contacts of the last step, in canonical order.
+    // Replaces `found` by the contacts of the last step, in canonical order. This function and the next two leave out
+    // what has been removed since.
     bool contacts(std::vector<ClothContact>& found) const;
     // Replaces `found` by the contacts of the last step with their impulses. Empty unless
     // plugin().recordContacts(true) was called before that step.

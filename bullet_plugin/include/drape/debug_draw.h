@@ -24,13 +24,14 @@ enum DebugDrawFlags : unsigned
     kDrawNormals = 2,
     // A line from the obstacle's point to the cloth's point, in the contact's colour.
     kDrawGaps = 4,
-    // The edges of the obstacles' patches near cloth, in light blue: runs of 16 triangles, of which one may be within
-    // reach of a triangle of the cloth. The broad phase looks at no others.
+    // The edges of obstacle patches of 16 triangles whose box is within reach of a cloth's triangle at the step's end,
+    // in light blue. The search also covers the paths over the step.
     kDrawPatches = 8,
-    // Both triangles of each pair that the last step could not keep apart (Plugin::flaggedPairs()), in magenta.
+    // The triangles and edges of each pair that the last step could not keep apart (Plugin::flaggedPairs()), in
+    // magenta. Single nodes are not drawn.
     kDrawFlagged = 16,
-    // The lines of kDrawNormals show the impulse, without contacts that did not push: its direction, friction included,
-    // and a length by its share of the greatest one in the step. Needs recorded impulses.
+    // The lines of kDrawNormals, which this implies, show the impulse, without contacts that did not push: its
+    // direction, friction included, and a length by its share of the greatest one in the step. Needs recorded impulses.
     kDrawImpulses = 32,
 
     kDrawDefault = kDrawContacts | kDrawNormals | kDrawFlagged,

@@ -5,9 +5,10 @@
 // units, world frame. C++11.
 //
 // Make the plugin before the collision configuration and the solver. They share its state, so the plugin may be
-// destroyed first; a dispatcher given to install() must be destroyed before the plugin. One plugin serves one thread
-// and any number of worlds of that thread, each with its own solver. btCollisionDispatcherMt is not supported. A child
-// made by fork() must not use or destroy the plugin; it must end with exec() or _exit().
+// destroyed first; a dispatcher given to install() must be destroyed before the plugin. A plugin belongs to one thread
+// at a time and serves any number of worlds, each with its own solver; two threads must not call it at once.
+// btCollisionDispatcherMt is not supported. A child made by fork() must not use or destroy the plugin; it must end with
+// exec() or _exit().
 #pragma once
 
 #include <functional>
@@ -105,8 +106,8 @@ public:
     // Returns the triangles of cloth that intersected where that step began, among bodies of setSelfCollision(). Empty
     // if memory runs out.
     std::vector<ClothPairInfo> clothPairs() const;
-    // Returns the pairs of triangles or features that step could not keep apart: those that intersected where it began,
-    // and cloth that pinned nodes bring together. Empty if memory runs out.
+    // Returns the pairs of triangles or features that step could not keep apart: those that intersected or touched
+    // where it began, and cloth that pinned nodes bring together. Empty if memory runs out.
     std::vector<FlaggedPair> flaggedPairs() const;
 
     // Keeps the contacts of each coming step with their impulses, for stepContacts(). Off by default; off costs nothing

@@ -127,7 +127,8 @@ struct Settings
     // microseconds to milliseconds. Any threads may run the jobs, at any time until the function returns; the calling
     // thread may be one of them. Meanwhile it must not call the plugin. Jobs never wait for one another, throw or call
     // this function. If the function throws, or runs some of the jobs only, the calling thread does the rest and the
-    // exception is dropped. The measurement of m_crossover does not use it. Results do not depend on it.
+    // exception is dropped. Not called if m_threads is 1. The measurement of m_crossover does not use it. Results do
+    // not depend on it.
     ParallelFor m_parallelFor;
 
     // Largest number of candidates in a step, up to 20 bytes each; 2^28 at most. A step that exceeds it leaves out the
@@ -140,8 +141,9 @@ struct Settings
     // Makes the device time every kernel launch, for Drape's own benchmarks: every step runs on the device then.
     bool m_profileKernels = false;
 
-    // Folder for compiled kernels and measurements. Empty means $XDG_CACHE_HOME/drape or ~/.cache/drape; "none" turns
-    // the cache off. PoCL always keeps its kernels itself, in $XDG_CACHE_HOME/pocl or ~/.cache/pocl.
+    // Folder for compiled kernels and measurements. Empty means $XDG_CACHE_HOME/drape or ~/.cache/drape, on Windows
+    // %LOCALAPPDATA%\\drape; "none" turns the cache off. PoCL always keeps its kernels itself, in $XDG_CACHE_HOME/pocl
+    // or ~/.cache/pocl.
     std::string m_cacheFolder;
 
     // Receives one line without a line feed about what no return value reports. Setup: a device that is missing or
