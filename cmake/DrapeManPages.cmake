@@ -1,11 +1,12 @@
 # drape_command_pages(<target>)
 #
 # Makes a man page and the completions of bash, zsh and fish of a program from its options, and installs them beside it
-# unless DRAPE_INSTALL is off. The program runs at build time: nothing is made when cross-compiling without an emulator.
+# unless DRAPE_INSTALL is off. The program runs at build time: nothing is made when cross-compiling without an emulator,
+# or with sanitizers.
 include(GNUInstallDirs)
 
 function(drape_command_pages target)
-  if(CMAKE_CROSSCOMPILING AND NOT CMAKE_CROSSCOMPILING_EMULATOR)
+  if(DRAPE_SANITIZE OR (CMAKE_CROSSCOMPILING AND NOT CMAKE_CROSSCOMPILING_EMULATOR))
     return()
   endif()
   set(folder ${PROJECT_BINARY_DIR}/pages)
