@@ -39,6 +39,13 @@ struct Sheets
         m_now = m_joined.m_positions;
     }
 
+    // Holds the first sheet. Returns its number of nodes.
+    std::size_t holdFirst()
+    {
+        const std::size_t nodes = m_set.firstNode(1);
+        std::fill(m_held.begin(), m_held.begin() + std::ptrdiff_t(nodes), 1);
+        return nodes;
+    }
     // Moves the nodes from where they are towards `ends`.
     GuardResult moveTo(const std::vector<float>& ends, ClothGuard& guard, ThreadTeam& threads)
     {
@@ -141,8 +148,7 @@ TEST(ClothGuard, PairsThatShortenedPathsBendAreListed)
     Sheets sheets(2, 17, 1, 0.05f);
     SelfIntersections check(sheets.m_joined);
     ClothGuard guard;
-    const std::size_t nodes = sheets.m_set.firstNode(1);
-    std::fill(sheets.m_held.begin(), sheets.m_held.begin() + std::ptrdiff_t(nodes), 1);
+    const std::size_t nodes = sheets.holdFirst();
     for (std::size_t i = 0; i < 3 * nodes; i += 3)
     {
         sheets.m_now[i] *= 0.3f;
@@ -165,8 +171,7 @@ TEST(ClothGuard, AHeldSheetPushesTheOtherAside)
     Sheets sheets(2, 9, 1, 0.03f);
     SelfIntersections check(sheets.m_joined);
     ClothGuard guard;
-    const std::size_t nodes = sheets.m_set.firstNode(1);
-    std::fill(sheets.m_held.begin(), sheets.m_held.begin() + std::ptrdiff_t(nodes), 1);
+    const std::size_t nodes = sheets.holdFirst();
     // The held sheet rises to the other one, which does not move by itself: it stops the way that the held one leaves.
     std::vector<float> ends = sheets.m_now;
     for (std::size_t i = 1; i < 3 * nodes; i += 3)
@@ -200,8 +205,7 @@ TEST(ClothGuard, AHeldSheetPushesAStackAside)
     Sheets sheets(kSheets, 9, 1, 0.03f);
     SelfIntersections check(sheets.m_joined);
     ClothGuard guard;
-    const std::size_t nodes = sheets.m_set.firstNode(1);
-    std::fill(sheets.m_held.begin(), sheets.m_held.begin() + std::ptrdiff_t(nodes), 1);
+    const std::size_t nodes = sheets.holdFirst();
     std::vector<float> ends = sheets.m_now;
     for (std::size_t i = 1; i < 3 * nodes; i += 3)
         ends[i] += 0.2f;
@@ -218,8 +222,7 @@ TEST(ClothGuard, ASheetThatHeldOnesCloseInOnIsCounted)
     ThreadTeam threads(2);
     Sheets sheets(3, 9, 1, 0.03f);
     ClothGuard guard;
-    const std::size_t nodes = sheets.m_set.firstNode(1);
-    std::fill(sheets.m_held.begin(), sheets.m_held.begin() + std::ptrdiff_t(nodes), 1);
+    const std::size_t nodes = sheets.holdFirst();
     std::fill(sheets.m_held.begin() + std::ptrdiff_t(2 * nodes), sheets.m_held.end(), 1);
     std::vector<float> ends = sheets.m_now;
     for (std::size_t i = 1; i < 3 * nodes; i += 3)

@@ -148,7 +148,7 @@ void ClothMeetings::addRow(const Contact& found, std::size_t index)
                                     std::uint32_t(view.m_nodes[2]), std::uint32_t(view.m_nodes[3])};
     if (!isGuarded(nodes)) return;
     ClothContact contact = {};
-    contact.m_key = std::uint64_t(found.m_featureIndex) << 32 | found.m_obstacleFeature;
+    contact.m_key = ContactRecords::keyOf(found);
     contact.m_split = split;
     bool moves = false;
     for (int k = 0; k < 4; ++k)
