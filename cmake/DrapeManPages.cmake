@@ -16,7 +16,7 @@ function(drape_command_pages target)
   list(GET pages 1 bash)
   list(GET pages 2 zsh)
   list(GET pages 3 fish)
-  # With the program itself, so that an install finds them whatever target was built.
+  # They are made with the program, so that an install finds them whatever target was built.
   add_custom_command(TARGET ${target} POST_BUILD BYPRODUCTS ${pages}
     COMMAND ${target} --man-page > ${man}
     COMMAND ${target} --completion bash > ${bash}

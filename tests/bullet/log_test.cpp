@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <stdexcept>
 #include <string>
 #include <thread>
 #include <vector>
@@ -55,6 +56,24 @@ TEST_F(LogTest, SaysNothingOfAGoodWorld)
     drop(world);
     EXPECT_FALSE(plugin.contacts().empty());
     EXPECT_TRUE(m_lines.empty()) << m_lines[0];
+}
+
+TEST_F(LogTest, NamesExceptionsOfTheAppsFunctionsOnce)
+{
+    m_settings.m_threads = 4;
+    m_settings.m_parallelFor = [](std::size_t, const std::function<void(std::size_t)>&)
+    { throw std::runtime_error("no workers"); };
+    Plugin plugin(m_settings);
+    plugin.setContactListener([](const StepContacts&) { throw std::runtime_error("an app's mistake"); });
+    DropWorld world(&plugin);
+    ClothSpec large;
+    large.m_nodes = 65;
+    large.m_centre = btVector3(5, 1, 0);
+    world.addCloth(large);
+    drop(world);
+    EXPECT_EQ(m_lines.size(), 2u);
+    EXPECT_EQ(countOf("contact listener threw an exception"), 1u);
+    EXPECT_EQ(countOf("m_parallelFor threw an exception"), 1u);
 }
 
 TEST_F(LogTest, NamesAWorldWithoutTheCollisionConfigurationOnce)

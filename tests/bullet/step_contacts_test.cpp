@@ -75,7 +75,7 @@ void stopGravity(DropWorld& world)
 }
 }  // namespace
 
-// Who solves the cloth, and where it would without records.
+// The solver of the cloth, and the place where it would run without records.
 struct SolvingCase
 {
     const char* m_name;

@@ -95,7 +95,7 @@ list(LENGTH packages count)
 message("${count} packages")
 find_program(lintian lintian)
 if(lintian)
-  # Who makes packages for others names a maintainer with CPACK_PACKAGE_CONTACT.
+  # CPACK_PACKAGE_CONTACT names the maintainer of packages that others get.
   must(${lintian} --allow-root --fail-on error
     --suppress-tags bogus-mail-host,bogus-mail-host-in-debian-changelog ${packages})
 endif()

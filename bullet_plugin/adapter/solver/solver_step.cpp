@@ -359,6 +359,7 @@ void SoftBodySolver::Work::solveStep()
     const std::size_t all = m_state.pipeline().deviceWaits();
     statistics.m_deviceWaits = all > waits ? all - waits : 0;  // a device may have been opened anew
     m_state.tellContacts(&m_owner, double(m_dt));
+    m_state.tellJobs();
 }
 
 // Lets bodies fall asleep that have been slow for as long as Bullet waits with rigid bodies. Bullet puts them to sleep

@@ -24,6 +24,22 @@ std::string nameOf(const btSoftBody& body)
     std::snprintf(text, sizeof text, "soft body %p", static_cast<const void*>(&body));
     return text;
 }
+
+// Calls the app's function in the app's floating-point environment. Returns false if it throws: the step goes on.
+template <class Call>
+bool runApps(const Call& call)
+{
+    const CallersFloats floats;
+    try
+    {
+        call();
+        return true;
+    }
+    catch (...)
+    {
+        return false;
+    }
+}
 }  // namespace
 
 PluginState::PluginState(const Settings& settings)
@@ -53,15 +69,8 @@ const DeviceReport& PluginState::device() const
 
 void PluginState::log(const std::string& line) const
 {
-    const CallersFloats floats;
-    try
-    {
-        if (m_settings.m_log) m_settings.m_log(line.c_str());
-    }
-    catch (...)
-    {
-        // The app's function failed; the step continues.
-    }
+    // A failure of the log itself has nowhere to go.
+    if (m_settings.m_log) runApps([&] { m_settings.m_log(line.c_str()); });
 }
 
 void PluginState::tellContacts(const btSoftBodySolver* solver, double timeStep)
@@ -70,15 +79,17 @@ void PluginState::tellContacts(const btSoftBodySolver* solver, double timeStep)
     if (!listener) return;
     BT_PROFILE("Drape listener");
     const StepContacts contacts = {solver, timeStep, m_records.list()};
-    const CallersFloats floats;
-    try
-    {
-        (*listener)(contacts);
-    }
-    catch (...)
-    {
-        // The app's function failed; the step continues.
-    }
+    if (runApps([&] { (*listener)(contacts); }) || m_toldListener) return;
+    m_toldListener = true;
+    log("the contact listener threw an exception, which is dropped, as later ones are");
+}
+
+void PluginState::tellJobs()
+{
+    if (m_toldJobs || !m_threads->appFailed()) return;
+    m_toldJobs = true;
+    log("Settings::m_parallelFor threw an exception, which is dropped, as later ones are; the calling thread did the "
+        "rest of its jobs");
 }
 
 ThreadWatch::Call PluginState::beginCall()

@@ -164,6 +164,8 @@ public:
 
     // Calls the listener, if there is one, with the records of a step of the solver. timeStep: s.
     void tellContacts(const btSoftBodySolver* solver, double timeStep);
+    // Logs a failure of the app's job system.
+    void tellJobs();
 
     StepStatistics m_statistics;
     ContactRecords m_records;
@@ -219,7 +221,8 @@ private:
     std::string m_failedReason = "an exception ended a call, see Plugin::error()";  // made before it is needed
     std::uint64_t m_failures = 0;
     bool m_mustRestart = false;
-    bool m_toldError = false;  // the log has the device's failure
+    bool m_toldError = false;                         // the log has the device's failure
+    bool m_toldListener = false, m_toldJobs = false;  // the log has an exception of the app's function
     PairCreateFunction m_create, m_createSwapped;
     btSoftBodyConcaveCollisionAlgorithm::CreateFunc m_stockCreate;
     btSoftBodyConcaveCollisionAlgorithm::SwappedCreateFunc m_stockCreateSwapped;

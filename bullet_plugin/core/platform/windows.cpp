@@ -23,7 +23,7 @@ void* loadedFunction(const char* name) noexcept
     return loader ? libraryFunction(loader, name) : nullptr;
 }
 
-// From the system's folder alone: a library in the current folder must not stand in for it.
+// Looks in the system's folder alone: a library in the current folder must not stand in for it.
 void* loadLibrary(const char* file) noexcept
 {
     return ::LoadLibraryExA(file, nullptr, LOAD_LIBRARY_SEARCH_SYSTEM32);

@@ -48,7 +48,7 @@ public:
     const std::vector<RigidContact>& contacts() const { return m_contacts; }
     const std::vector<RigidAnchor>& anchors() const { return m_anchors; }
     // Return what the i-th contact of nodes, or of features, has given the cloth since clear(), N s; friction included.
-    // Of the host's substeps alone.
+    // Only substeps of the host count.
     Vec3 contactImpulse(std::size_t i) const { return m_contactImpulses[i]; }
     Vec3 featureImpulse(std::size_t i) const { return m_features[i].m_impulse; }
     // The cloth's position in the order in which a sweep visits cloths.

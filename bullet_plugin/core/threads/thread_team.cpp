@@ -116,7 +116,7 @@ void ThreadTeam::handToApp()
     }
     catch (...)
     {
-        // The caller claims what is left.
+        m_appFailed = true;  // the caller claims what is left
     }
 }
 

@@ -48,6 +48,8 @@ public:
     ThreadTeam& operator=(const ThreadTeam&) = delete;
 
     unsigned size() const { return m_size; }
+    // Returns whether a call of the app's job system has thrown.
+    bool appFailed() const { return m_appFailed; }
 
     // Calls job(i) for every i below count, in any order and on any thread of the team. Returns when all have returned.
     template <class Job>
@@ -91,6 +93,7 @@ private:
     const std::function<void(std::size_t)> m_appJob = [this](std::size_t thread) { workForApp(thread); };
     std::vector<std::thread> m_threads;
     bool m_started = false;
+    bool m_appFailed = false;
     int m_callersCore = -1;  // the threads keep off it
 
     // Written before the items are offered, and unchanged until all of them are done.

@@ -121,9 +121,9 @@ public:
     // Calls the listener at the end of each internal step of a world of the plugin, with the contacts of that step. The
     // call comes from the thread that steps the world, within stepSimulation(), when soft bodies have their final
     // positions and velocities and before Bullet's normals follow. The listener may read the world and call this
-    // class's const functions and setContactListener(); it must not change the world. Its exceptions are dropped. Null
-    // removes it. The step has the cost of recordContacts() while there is one. Steps that fail, or run without Drape,
-    // make no call. If memory runs out, nothing changes.
+    // class's const functions and setContactListener(); it must not change the world. Its exceptions are dropped, the
+    // first with a line of Settings::m_log. Null removes it. The step has the cost of recordContacts() while there is
+    // one. Steps that fail, or run without Drape, make no call. If memory runs out, nothing changes.
     void setContactListener(ContactListener listener);
 
     // Returns one line with the device, the reason for it and the last step. "out of memory" if memory runs out.

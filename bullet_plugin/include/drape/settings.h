@@ -127,8 +127,8 @@ struct Settings
     // microseconds to milliseconds. Any threads may run the jobs, at any time until the function returns; the calling
     // thread may be one of them. Meanwhile it must not call the plugin. Jobs never wait for one another, throw or call
     // this function. If the function throws, or runs some of the jobs only, the calling thread does the rest and the
-    // exception is dropped. Not called if m_threads is 1. The measurement of m_crossover does not use it. Results do
-    // not depend on it.
+    // exception is dropped, the first with a line of m_log. Not called if m_threads is 1. The measurement of
+    // m_crossover does not use it. Results do not depend on it.
     ParallelFor m_parallelFor;
 
     // Largest number of candidates in a step, up to 20 bytes each; 2^28 at most. A step that exceeds it leaves out the
@@ -148,9 +148,10 @@ struct Settings
 
     // Receives one line without a line feed about what no return value reports. Setup: a device that is missing or
     // failed, kernels that were compiled (with the time), a world without the solver or the collision configuration,
-    // two threads in one plugin. Cloth: left out of a step, intersecting at its start (with counts), a margin that is
-    // negative or as large as the mesh, a thickness out of proportion to the cloth's edges. Called once while the
-    // problem lasts, on a thread that calls the plugin. nullptr means no lines. Exceptions from it are dropped.
+    // two threads in one plugin, exceptions of m_parallelFor and of a contact listener. Cloth: left out of a step,
+    // intersecting at its start (with counts), a margin that is negative or as large as the mesh, a thickness out of
+    // proportion to the cloth's edges. Called once while the problem lasts, on a thread that calls the plugin. nullptr
+    // means no lines. Exceptions from it are dropped.
     std::function<void(const char*)> m_log = logToStandardError;
 };
 }  // namespace drape
