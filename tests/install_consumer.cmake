@@ -2,9 +2,9 @@
 #
 # It builds once as a CMake package and once using pkg-config. It also compiles and runs every block of C++ and C in
 # README.md and docs/*.md using pkg-config.
-# Input: BUILD (Drape's build folder), SOURCE (the consumer), DOCUMENTS (the folder of README.md and docs/), WORK (made
-# anew), LIBDIR, COMPILER and C_COMPILER, SANITIZE, DOUBLE (the precision of Bullet that Drape is built for), and with
-# the Python module PYTHON and PYTHON_DIR.
+# Folders: BUILD (Drape's build), SOURCE (the consumer), DOCUMENTS (README.md and docs/), WORK (made anew), LIBDIR.
+# Compilers: COMPILER, C_COMPILER, SANITIZE. Features: DOUBLE (the precision of Bullet that Drape is built for). With
+# the Python module also PYTHON and PYTHON_DIR.
 cmake_minimum_required(VERSION 3.25)
 function(must)
   execute_process(COMMAND ${ARGV} COMMAND_ECHO STDOUT COMMAND_ERROR_IS_FATAL ANY)

@@ -21,8 +21,8 @@ struct Bounds
     bool meets(const Bounds& other) const { return TestAabbAgainstAabb2(m_low, m_high, other.m_low, other.m_high); }
 };
 
-// Returns whether a leaf of the shape meets the nodes and not the bounds: the broad phase may still have a pair of an
-// object that has gone, and a compound makes pairs of the children that meet the bounds alone.
+// Returns whether a leaf of the shape meets the nodes and not the bounds. Only such a leaf is missed: the broad phase
+// may still have a pair of an object that has gone, and a compound makes pairs of the children that meet the bounds.
 bool isMissed(const btCollisionShape& shape, const btTransform& pose, const Bounds& nodes, const Bounds& bounds)
 {
     if (isSurfaceShape(shape))

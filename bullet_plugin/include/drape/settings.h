@@ -148,10 +148,10 @@ struct Settings
 
     // Receives one line without a line feed about what no return value reports. Setup: a device that is missing or
     // failed, kernels that were compiled (with the time), a world without the solver or the collision configuration,
-    // two threads in one plugin, exceptions of m_parallelFor and of a contact listener. Cloth: left out of a step,
-    // intersecting at its start (with counts), a margin that is negative or as large as the mesh, a thickness out of
-    // proportion to the cloth's edges. Called once while the problem lasts, on a thread that calls the plugin. nullptr
-    // means no lines. Exceptions from it are dropped.
+    // two threads in one plugin. The app: exceptions of m_parallelFor and of a contact listener. Cloth: left out of a
+    // step, intersecting at its start (with counts), a margin that is negative or as large as the mesh, a thickness out
+    // of proportion to the cloth's edges. Called once while the problem lasts, on a thread that calls the plugin.
+    // nullptr means no lines. Exceptions from it are dropped.
     std::function<void(const char*)> m_log = logToStandardError;
 };
 }  // namespace drape
