@@ -2,11 +2,11 @@
 
 DRAPE_FUNCTION Real drapeMin(Real a, Real b)
 {
-    return b < a ? b : a;
+    return choose(b < a, b, a);
 }
 DRAPE_FUNCTION Real drapeMax(Real a, Real b)
 {
-    return a < b ? b : a;
+    return choose(a < b, b, a);
 }
 DRAPE_FUNCTION Real drapeClamp01(Real a)
 {

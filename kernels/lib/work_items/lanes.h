@@ -61,6 +61,7 @@ DRAPE_FUNCTION float laneOf(const Lanes* lanes, DRAPE_UINT lane)
 }
 // Returns a, not the number, for a number and NaN: on a CPU fmax and fmin take three more instructions to return the
 // number.
+#ifndef DRAPE_CPU_KERNELS
 DRAPE_FUNCTION Lanes lanesMax(Lanes a, Lanes b)
 {
     return a < b ? b : a;
@@ -69,6 +70,7 @@ DRAPE_FUNCTION Lanes lanesMin(Lanes a, Lanes b)
 {
     return b < a ? b : a;
 }
+#endif
 #elif defined(__OPENCL_VERSION__)
 #define lanesMax(a, b) fmax(a, b)
 #define lanesMin(a, b) fmin(a, b)

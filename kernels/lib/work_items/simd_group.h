@@ -76,9 +76,9 @@ static int anyLane(const LaneMask mask)
 static float leastLane(const Lanes all)
 {
 #ifdef DRAPE_CPU_KERNELS
-    float least = all[0];
-    for (int i = 1; i < DRAPE_LANES; ++i)
-        least = drapeMin(least, all[i]);
+    float least = laneOf(&all, 0);
+    for (uint i = 1; i < DRAPE_LANES; ++i)
+        least = drapeMin(least, laneOf(&all, i));
     return least;
 #else
 #if DRAPE_LANES == 16
