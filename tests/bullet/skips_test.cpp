@@ -169,6 +169,42 @@ TEST_P(Skips, ClothThatIsPinned)
     EXPECT_EQ(hashOf(*pinned[1]), hashes[1]);
 }
 
+// A world without soft bodies while its slab moves; cloth comes later. A listener defeats the skip.
+TEST_P(Skips, StepsWithoutSoftBodies)
+{
+    std::vector<std::vector<std::uint64_t>> hashes(2);
+    for (const bool isDefeated : {false, true})
+    {
+        Plugin plugin(GetParam().m_settings);
+        plugin.setContactListener(isDefeated ? ContactListener([](const StepContacts&) {}) : ContactListener());
+        MeshShape slab(makeBox(3.0f, 0.2f, 3.0f));
+        DropWorld world(&plugin);
+        btRigidBody& body = world.addKinematic(slab.shape(), shiftedTo(0, -0.2, 0));
+        const auto step = [&](int count)
+        {
+            body.setWorldTransform(shiftedTo(0.01 * count, -0.2, 0));
+            world.step();
+        };
+        for (int round = 0; round < 2; ++round)
+        {
+            const int empty = round == 0 ? 20 : 1210;  // the first cloth's data go after 1,200
+            for (int i = 0; i < empty; ++i)
+                step(i);
+            btSoftBody& cloth = world.addCloth(clothAt(0.01 * empty, -0.06));
+            for (int i = empty; i < empty + 30; ++i)
+            {
+                step(i);
+                hashes[isDefeated].push_back(hashOf(cloth));
+            }
+            EXPECT_GT(plugin.statistics().m_contacts, 100u);
+            world.remove(cloth);
+        }
+        step(2000);
+        EXPECT_EQ(plugin.statistics().m_contacts, 0u);
+    }
+    EXPECT_EQ(hashes[0], hashes[1]);
+}
+
 #ifdef NDEBUG
 // Limits Drape's time in a step of a world in which all cloth sleeps on its obstacles, some of them kinematic. The step
 // runs on the host, and launches nothing on a device.

@@ -29,6 +29,8 @@ SoftBodySolver::~SoftBodySolver()
 void SoftBodySolver::predictMotion(btScalar dt)
 {
     if (!m_work) return btDefaultSoftBodySolver::predictMotion(dt);
+    m_work->m_isIdle = m_work->isIdle();
+    if (m_work->m_isIdle) return;
     BT_PROFILE("Drape predictMotion");
     const ThreadWatch::Call call = m_state->beginCall();
     const auto failed = [&](const CaughtException& caught)
@@ -48,6 +50,7 @@ void SoftBodySolver::predictMotion(btScalar dt)
 void SoftBodySolver::solveConstraints(btScalar dt)
 {
     if (!m_work) return btDefaultSoftBodySolver::solveConstraints(dt);
+    if (m_work->m_isIdle && !m_work->hasBodies()) return;
     BT_PROFILE("Drape solveConstraints");
     const ThreadWatch::Call call = m_state->beginCall();
     const DefaultFloats floats;

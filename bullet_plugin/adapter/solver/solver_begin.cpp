@@ -122,6 +122,21 @@ void SoftBodySolver::Work::predict(const Bodies& bodies, btScalar dt)
     }
 }
 
+bool SoftBodySolver::Work::isIdle()
+{
+    if (hasBodies())
+        m_emptySteps = 0;
+    else if (m_emptySteps < kIdleAfter)
+        ++m_emptySteps;
+    else if (m_failures == m_state.failures() && m_state.isSettled())
+    {
+        m_listed = true;  // no body
+        m_predicted.clear();
+        return true;
+    }
+    return false;
+}
+
 void SoftBodySolver::Work::beginStep(btScalar dt, std::vector<StepObstacle>& obstacles)
 {
     m_listed = false;

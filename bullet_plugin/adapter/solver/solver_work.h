@@ -101,6 +101,9 @@ struct SoftBodySolver::Work
 
     // Returns false in a world without soft bodies, whose step must cost nothing: then no clock is read.
     bool hasBodies() const { return m_bodies.size() > 0; }
+    // Begins the step. Returns whether there is nothing to do in it: the world has had no soft bodies for so long that
+    // all which ages with the steps is gone.
+    bool isIdle();
 
     // Prediction.
     void predict(const Bodies& bodies, btScalar dt);
@@ -172,5 +175,8 @@ struct SoftBodySolver::Work
     std::size_t m_asleep = 0;                                    // cloths that are not among them
     StepParts m_parts;                                           // parts of the running step, without its waits
     std::uint64_t m_failures;  // failures of the state that a step of this solver has reported
+    static constexpr int kIdleAfter = 2 * UsageWatch::kWindow;
+    bool m_isIdle = false;          // this step
+    int m_emptySteps = kIdleAfter;  // since the last one with soft bodies, up to kIdleAfter
 };
 }  // namespace drape

@@ -90,6 +90,11 @@ public:
     void fail(const char* call, const CaughtException& caught) noexcept;
     // Counts up with each fail().
     std::uint64_t failures() const { return m_failures; }
+    // Returns whether a step without soft bodies would change nothing, and nobody would be told of it.
+    bool isSettled() const
+    {
+        return ready() && !m_mustRestart && !m_listener && !device().m_isStarting && !m_pipeline->deviceFailed();
+    }
     // Restarts the pipeline if fail() requested it. Throws if memory is still short.
     void restart();
 

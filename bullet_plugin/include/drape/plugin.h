@@ -99,7 +99,8 @@ public:
     const DeviceReport& device() const;
     // Returns the statistics of the last internal step of any world of the plugin. Valid as long as the plugin. One
     // call of stepSimulation() may run several such steps, or none. A pre-tick callback sees the step before it; a
-    // post-tick callback comes before Bullet solves soft bodies.
+    // post-tick callback comes before Bullet solves soft bodies. Steps of a world without soft bodies do not count if
+    // it never had one, or none for 1,200 steps.
     const StepStatistics& statistics() const;
     // Returns the contacts of that step in canonical order; the call makes the list. Empty if memory runs out.
     std::vector<ContactInfo> contacts() const;
