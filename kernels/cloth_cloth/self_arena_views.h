@@ -24,8 +24,6 @@ static SelfPatches selfPatchesAt(__global PatchWord* arena, const SelfPatchLayou
     patches.m_edgeBoxes = (__global float*)(arena + layout->m_edgeBoxes);
     patches.m_wideNodes = (__global float*)(arena + layout->m_wideNodes);
     patches.m_smooth.m_first = 0;
-    patches.m_rest = 0;
-    patches.m_reachScale = 1.0f;
     return patches;
 }
 

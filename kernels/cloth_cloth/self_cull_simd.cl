@@ -153,9 +153,9 @@ static void cullSelf(const ClothView* cloth, const SelfRadii* radii, const SelfP
     const uint mesh = patches->m_patches[own].m_mesh;
     const float radius = radii->m_radius[mesh];
     if (radius < 0.0f) return;
-    const SelfCloths cloths = {{cloth->m_triangles, cloth->m_edges, volumeStart(cloth), cloth->m_end, radius,
-                                radii->m_thickness[mesh], patches->m_rest, patches->m_reachScale},
-                               *patches};
+    const SelfCloths cloths = {
+        {cloth->m_triangles, cloth->m_edges, volumeStart(cloth), cloth->m_end, radius, radii->m_thickness[mesh]},
+        *patches};
     SimdGroup group;
     simdStart(&group);
     walkSelf(&group, &cloths, own, list);

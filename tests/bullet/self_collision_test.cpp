@@ -4,9 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bullet_plugin/adapter/wiring/plugin_state.h"
 #include "oracle/self_intersections.h"
 #include "scenes/shapes.h"
 #include "tests/bullet/drop_world.h"
+#include "tests/support/backends.h"
+#include "tests/support/environment.h"
 
 namespace drape::test
 {
@@ -127,6 +130,23 @@ TEST(SelfCollision, LayersOnASphereNeverMeetWithAnyNumberOfThreads)
         ends.push_back(layers.positions());
         EXPECT_EQ(ends.front(), ends.back());
     }
+}
+
+TEST(SelfCollision, ADeviceThatSearchesChangesNothing)
+{
+    if (!isDeviceExpected()) GTEST_SKIP() << "no OpenCL device, as DRAPE_TEST_NO_DEVICE says";
+    std::vector<std::vector<float>> ends;
+    for (const SolverPlace place : {SolverPlace::Host, SolverPlace::Device})
+    {
+        MeshShape sphere(makeSphere(0.5f, 3));
+        Layers layers(settingsFor(place), 3, 0.03f);
+        layers.m_world.addObstacle(sphere.shape());
+        EXPECT_EQ(layers.m_plugin.state()->pipeline().searchDevice() != nullptr, place == SolverPlace::Device);
+        EXPECT_EQ(layers.run(60), 0u);
+        EXPECT_GT(layers.m_plugin.statistics().m_selfContacts, 0u);
+        ends.push_back(layers.positions());
+    }
+    EXPECT_EQ(ends.front(), ends.back());
 }
 
 TEST(SelfCollision, LayersWhoseLinksBulletSolvesNeverMeet)

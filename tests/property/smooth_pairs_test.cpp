@@ -62,7 +62,7 @@ struct Sheet
         const ClothView view = clothView(start.data(), end.data(), cloths.triangles().data(), cloths.edges().data(),
                                          std::uint32_t(cloths.vertexCount()), std::uint32_t(cloths.triangles().size()),
                                          DRAPE_CONTINUOUS, nullptr);
-        const SelfStep step = {cloths, selfView(view, m_scene.m_clothRest.data(), 1.5f), reach, none, share > 0, share};
+        const SelfStep step = {cloths, selfView(view, m_scene.m_clothRest.data(), 1.5f), reach, none, share};
         std::vector<Contact> contacts;
         m_patches.cull(step, UINT64_MAX, m_threads);
         m_patches.findContacts(step, {}, m_threads, contacts);

@@ -101,6 +101,7 @@ void ClothMeetings::begin(const Bodies& bodies, const std::function<bool(const b
     if (!anyStepped) m_members.clear();
     m_wasPushed = false;
     if (m_members.empty()) return;
+    m_set.useDevice(m_state.pipeline().searchDevice(), m_state.settings().m_cacheFolder);
     const std::uint64_t layout = layoutHash();
     if (layout != m_layout || m_set.memberCount() != m_members.size())
     {

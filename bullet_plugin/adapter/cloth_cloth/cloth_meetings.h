@@ -1,8 +1,8 @@
 // Contacts of the soft bodies of a step with themselves and with each other, and the guard that keeps them apart.
 //
 // Input: the solver's bodies that SelfCollision names. begin() lists them, find() makes rows of their contacts along
-// the predicted paths, and guard() shortens the paths that the solver made where features of cloth would meet. All on
-// the host. Errors: exceptions pass through.
+// the predicted paths, and guard() shortens the paths that the solver made where features of cloth would meet. A GPU
+// makes the searches, the host the rest. Errors: exceptions pass through.
 #pragma once
 
 #include <cstdint>

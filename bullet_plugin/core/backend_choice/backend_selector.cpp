@@ -188,6 +188,13 @@ Device* BackendSelector::device()
     return m_device ? &m_device->device() : nullptr;
 }
 
+std::shared_ptr<Device> BackendSelector::searchDevice() const
+{
+    if (!m_device || m_device->device().failed()) return nullptr;
+    const bool searches = m_device->device().isGpu() || m_settings.m_solverPlace == SolverPlace::Device;
+    return searches ? m_device->sharedDevice() : nullptr;
+}
+
 SolveStage* BackendSelector::solveStage(std::size_t nodes)
 {
     if (!m_device || m_device->device().failed() || !m_device->solveStage().created()) return nullptr;

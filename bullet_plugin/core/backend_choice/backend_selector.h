@@ -50,6 +50,9 @@ public:
     DeviceBackend* chosenDevice() { return m_report.m_onHost ? nullptr : m_device.get(); }
     // Returns the open device, also while the host runs the steps and after its failure; null without one.
     Device* device();
+    // Returns the open device for searches among cloths: a GPU, or one that the settings have cloth solved on. Null
+    // without one, and after its failure.
+    std::shared_ptr<Device> searchDevice() const;
 
     // Returns the stage that solves cloths on the device; null if the host should. nodes: see Pipeline::solveStage().
     SolveStage* solveStage(std::size_t nodes);

@@ -31,7 +31,7 @@ bool solvesOn(const Device& device, const Settings& settings)
 }
 }  // namespace
 
-DeviceBackend::DeviceBackend(std::unique_ptr<Device> device, const Settings& settings)
+DeviceBackend::DeviceBackend(std::shared_ptr<Device> device, const Settings& settings)
     : m_device(std::move(device)),
       m_settings(settings),
       m_programs(*m_device, settings.m_cacheFolder, filesTogether(), patchDefines(*m_device))

@@ -22,10 +22,11 @@ class DeviceBackend
 {
 public:
     // Builds the kernels and runs each once. On failure device().failed() is true and the error holds the log.
-    DeviceBackend(std::unique_ptr<Device> device, const Settings& settings);
+    DeviceBackend(std::shared_ptr<Device> device, const Settings& settings);
     ~DeviceBackend();
 
     Device& device() { return *m_device; }
+    const std::shared_ptr<Device>& sharedDevice() const { return m_device; }
     bool fromCache() const { return m_programs.fromCache(); }
 
     // Solves cloths; created if the settings may have them solved on this device.
@@ -84,7 +85,7 @@ private:
     // Makes the result's list; the first `read` contacts are read already.
     void readAll(StepResult& result, std::size_t read);
 
-    std::unique_ptr<Device> m_device;
+    std::shared_ptr<Device> m_device;
     Settings m_settings;
     ProgramSet m_programs;
     bool m_limitReached = false;

@@ -1,8 +1,9 @@
 #include "cloth_set.h"
 
 #include <algorithm>
-#include <tuple>
+#include <utility>
 
+#include "bullet_plugin/core/backends/device_cloth_search.h"
 #include "bullet_plugin/core/exact/triangles.h"
 #include "bullet_plugin/core/probe/mesh_probe.h"
 
@@ -61,7 +62,24 @@ bool meetBeyond(const Triangle& first, const Triangle& second, const float* posi
     if (shared != 1) return shared == 0;
     return sideMeets(first, vertex, second, positions) || sideMeets(second, vertex, first, positions);
 }
+
+// Packs what orders pairs of features. Nodes and edges are counted in 31 bits.
+std::pair<std::uint64_t, std::uint32_t> keyOf(const FeatureTest& pair)
+{
+    return {std::uint64_t(pair.m_motion) << 32 | pair.m_cloth, pair.m_lane};
+}
 }  // namespace
+
+ClothSet::ClothSet() = default;
+ClothSet::~ClothSet() = default;
+
+void ClothSet::useDevice(std::shared_ptr<Device> device, const std::string& cacheFolder)
+{
+    if (device == (m_search ? m_search->device() : nullptr)) return;
+    if (m_scene) m_scene->m_clothNodes.release();
+    m_search.reset(device ? new DeviceClothSearch(std::move(device), cacheFolder) : nullptr);
+    if (m_scene) m_scene->m_clothNodes.reserve(m_search ? m_search->device().get() : nullptr, 3 * nodeCount());
+}
 
 void ClothSet::assign(const std::vector<SetMember>& members, float thickness, ThreadTeam& threads)
 {
@@ -90,7 +108,8 @@ void ClothSet::assign(const std::vector<SetMember>& members, float thickness, Th
     mesh.m_selfThickness = thickness;
     m_scene.reset(new Scene);
     m_scene->addCloth(mesh);
-    m_scene->join(nullptr);
+    m_scene->join(m_search ? m_search->device().get() : nullptr);
+    if (m_search) m_search->forgetScene();
     m_patches.reset(new HostSelfPatches);
     m_patches->update(m_scene->m_cloths, m_scene->m_clothRest.data());
     m_patches->findSmoothPairs(m_scene->m_cloths, m_scene->m_clothRest.data(), kSmoothReach * thickness, threads);
@@ -109,18 +128,34 @@ SelfStep ClothSet::stepFor(float reach, float reachScale, bool forContacts)
     m_noObstacles.assign(1, -1.0f);
     const ClothView view =
         clothView(start(), end(), cloths.triangles().data(), cloths.edges().data(), std::uint32_t(cloths.vertexCount()),
-                  std::uint32_t(cloths.triangles().size()), DRAPE_CONTINUOUS, nullptr);
-    return {cloths,      selfView(view, m_scene->m_clothRest.data(), reachScale),
-            m_reach,     m_noObstacles,
-            forContacts, forContacts ? kSmoothContactMargin * DRAPE_REST_SHARE * reachScale : kGuardedShare};
+                  std::uint32_t(cloths.triangles().size()), kClothSearchMode, nullptr);
+    const float smoothShare = forContacts ? kSmoothContactMargin * DRAPE_REST_SHARE * reachScale : kGuardedShare;
+    return {cloths, selfView(view, m_scene->m_clothRest.data(), reachScale), m_reach, m_noObstacles, smoothShare};
+}
+
+bool ClothSet::listPairs(const SelfStep& step, std::uint64_t limit, ThreadTeam& threads,
+                         std::vector<FeatureTest>& pairs)
+{
+    if (m_search)
+    {
+        m_search->submitPairs(*m_scene, m_reach, limit);
+        m_patches->checkSmooth(step, threads);
+        if (m_search->finishPairs(pairs))
+        {
+            const auto isSmooth = [this](const FeatureTest& pair) { return m_patches->isSmooth(pair); };
+            pairs.erase(std::remove_if(pairs.begin(), pairs.end(), isSmooth), pairs.end());
+            return true;
+        }
+    }
+    m_patches->cull(step, limit, threads);
+    return m_patches->copyTests(limit, pairs);
 }
 
 bool ClothSet::findPairs(float reach, std::uint64_t limit, ThreadTeam& threads, std::vector<FeatureTest>& pairs)
 {
-    m_patches->cull(stepFor(reach, 1.0f, false), limit, threads);
-    if (!m_patches->copyTests(limit, pairs)) return false;
-    const auto keyOf = [](const FeatureTest& pair)
-    { return std::make_tuple(pair.m_motion, pair.m_cloth, pair.m_lane); };
+    const bool isWhole = listPairs(stepFor(reach, 1.0f, false), limit, threads, pairs);
+    m_smoothPairs = m_patches->counts().m_smoothPairs;
+    if (!isWhole) return false;
     std::sort(pairs.begin(), pairs.end(),
               [&](const FeatureTest& a, const FeatureTest& b) { return keyOf(a) < keyOf(b); });
     return true;
@@ -187,7 +222,10 @@ void ClothSet::findMeeting(ThreadTeam& threads, std::vector<std::uint32_t>& node
 bool ClothSet::findContacts(float reachScale, std::uint64_t limit, ThreadTeam& threads, std::vector<Contact>& contacts)
 {
     const SelfStep step = stepFor(m_thickness * reachScale, reachScale, true);
+    m_smoothPairs = 0;
+    if (m_search && m_search->findContacts(*m_scene, m_reach, reachScale, limit, contacts)) return true;
     m_patches->cull(step, limit, threads);
+    m_smoothPairs = m_patches->counts().m_smoothPairs;
     contacts.clear();
     m_patches->findContacts(step, {limit, UINT64_MAX}, threads, contacts);
     return m_patches->counts().m_candidates <= limit;

@@ -1,12 +1,14 @@
 // Several cloths joined into one mesh, so that pairs of features within a cloth and between two are found in one way.
 //
 // Input: the members' triangles and nodes at rest, then in each step their nodes at its start and end. Output: pairs of
-// features whose paths may come near each other, and their contacts (self_step.h). Guarantee: as there. On the host.
+// features whose paths may come near each other, and their contacts (self_step.h). Guarantee: as there. On the host, or
+// on a device for as long as it has room.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "bullet_plugin/core/lists/contact_view.h"
@@ -15,6 +17,8 @@
 
 namespace drape
 {
+class Device;
+class DeviceClothSearch;
 // A cloth as the caller has it: arrays that are read during the call only. Lengths in metres.
 struct SetMember
 {
@@ -32,6 +36,12 @@ constexpr float kGuardedShare = 0.1f;
 class ClothSet
 {
 public:
+    ClothSet();
+    ~ClothSet();
+
+    // Lets a device make the searches; null: the host. Results are the same. Loses the nodes if the device is another
+    // one. cacheFolder: see Settings.
+    void useDevice(std::shared_ptr<Device> device, const std::string& cacheFolder);
     // Replaces the members. thickness: m, the greatest of any pair.
     void assign(const std::vector<SetMember>& members, float thickness, ThreadTeam& threads);
 
@@ -68,19 +78,22 @@ public:
     // Finds the contacts along the paths that reach to `reachScale` times the thickness, in canonical order. More than
     // `limit` pairs give false.
     bool findContacts(float reachScale, std::uint64_t limit, ThreadTeam& threads, std::vector<Contact>& contacts);
-    // Returns how many pairs of patches the last search left out.
-    std::size_t smoothPairs() const { return m_patches->counts().m_smoothPairs; }
+    // Returns how many pairs of patches the last search left out. A device finds contacts without.
+    std::size_t smoothPairs() const { return m_smoothPairs; }
     // Resolves a contact; nodes are counted over all members.
     SelfContactView view(const Contact& contact) const { return viewSelfContact(*m_scene, contact); }
 
 private:
     SelfStep stepFor(float reach, float reachScale, bool forContacts);
+    bool listPairs(const SelfStep& step, std::uint64_t limit, ThreadTeam& threads, std::vector<FeatureTest>& pairs);
 
-    std::unique_ptr<Scene> m_scene;  // with all members as its only mesh
+    std::unique_ptr<DeviceClothSearch> m_search;  // null: the host searches
+    std::unique_ptr<Scene> m_scene;               // with all members as its only mesh
     std::unique_ptr<HostSelfPatches> m_patches;
     SelfReach m_reach;
     std::vector<float> m_noObstacles;  // see SelfStep
     std::vector<std::size_t> m_firstNodes;
     float m_thickness = 0;
+    std::size_t m_smoothPairs = 0;
 };
 }  // namespace drape

@@ -27,6 +27,7 @@ void HostSelfPatches::update(const MeshPool& cloths, const float* rest)
     if (m_layout.m_patches.empty()) return;
     m_vertexIds = vertexIdsOf(m_layout.m_vertexOwners, cloths.triangles());
     m_edgeIds = edgeIdsOf(m_layout.m_edgeOwners, cloths.triangles());
+    listOwners(cloths);
     m_faceNodes = faceNodesOf(m_layout.m_faceOwners, cloths.triangles(), kWidth);
     m_edgeNodes = edgeNodesOf(m_edgeIds, cloths.edges(), kWidth);
     m_faceBoxes.resize(m_layout.m_faceOwners.size() * DRAPE_BOX_FLOATS);
@@ -47,9 +48,28 @@ void HostSelfPatches::update(const MeshPool& cloths, const float* rest)
                  m_vertexBoxes.data(),
                  m_edgeBoxes.data(),
                  m_wideNodes.data(),
-                 {},
-                 nullptr,
-                 1};
+                 {}};
+}
+
+// Lists the patch that owns each feature.
+void HostSelfPatches::listOwners(const MeshPool& cloths)
+{
+    m_facePatches.assign(cloths.triangles().size(), 0);
+    m_vertexPatches.assign(cloths.vertexCount(), 0);
+    m_edgePatches.assign(cloths.edges().size(), 0);
+    for (std::uint32_t patch = 0; patch < m_layout.m_patches.size(); ++patch)
+    {
+        const auto own = [&](const std::vector<std::uint32_t>& ids, std::uint32_t block, std::uint32_t blocks,
+                             std::vector<std::uint32_t>& owners)
+        {
+            for (std::uint32_t lane = block * kWidth; lane < (block + blocks) * kWidth; ++lane)
+                if (ids[lane] != DRAPE_NO_FEATURE) owners[ids[lane]] = patch;
+        };
+        const Patch& of = m_layout.m_patches[patch];
+        own(m_layout.m_faceOwners, patch, 1, m_facePatches);
+        own(m_vertexIds, of.m_vertexBlock, of.m_vertexBlocks, m_vertexPatches);
+        own(m_edgeIds, of.m_edgeBlock, of.m_edgeBlocks, m_edgePatches);
+    }
 }
 
 void HostSelfPatches::findSmoothPairs(const MeshPool& cloths, const float* rest, float reach, ThreadTeam& threads)
@@ -80,14 +100,7 @@ void HostSelfPatches::cull(const SelfStep& step, std::uint64_t limit, ThreadTeam
     m_counters = {};
     m_retries = m_smoothPairs = 0;
     if (m_patches.m_patchCount == 0) return;
-    m_patches.m_smooth = {};
-    m_patches.m_rest = step.m_dropsFar ? step.m_view.m_rest : nullptr;
-    m_patches.m_reachScale = step.m_view.m_reachScale;
-    if (step.m_smoothShare > 0)
-    {
-        m_smoothPairs = m_smooth.check(step.start(), step.m_view.m_cloth.m_end, step.m_smoothShare, threads);
-        m_patches.m_smooth = m_smooth.view();
-    }
+    checkSmooth(step, threads);
     pack(step, threads);
     if (m_tests.empty()) m_tests.resize(kFirstTests);
     const auto fill = [&]
@@ -97,6 +110,23 @@ void HostSelfPatches::cull(const SelfStep& step, std::uint64_t limit, ThreadTeam
         return m_testsBefore = cullPatches(step, {0, m_patches.m_patchCount}, list, threads);
     };
     m_retries = fillGrowing(m_tests, limit, fill);
+}
+
+void HostSelfPatches::checkSmooth(const SelfStep& step, ThreadTeam& threads)
+{
+    m_smoothPairs = 0;
+    m_patches.m_smooth = {};
+    if (!(step.m_smoothShare > 0)) return;
+    m_smoothPairs = m_smooth.check(step.start(), step.m_view.m_cloth.m_end, step.m_smoothShare, threads);
+    m_patches.m_smooth = m_smooth.view();
+}
+
+bool HostSelfPatches::isSmooth(const FeatureTest& pair) const
+{
+    const bool ofNode = pair.m_motion == DRAPE_SELF_TEST_NODE;
+    const std::uint32_t first = (ofNode ? m_vertexPatches : m_edgePatches)[pair.m_cloth];
+    const std::uint32_t second = (ofNode ? m_facePatches : m_edgePatches)[pair.m_lane];
+    return liesSmoothly(&m_patches.m_smooth, std::min(first, second), std::max(first, second)) != 0;
 }
 
 bool HostSelfPatches::copyTests(std::uint64_t limit, std::vector<FeatureTest>& tests) const

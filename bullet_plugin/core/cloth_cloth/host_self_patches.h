@@ -29,6 +29,10 @@ public:
     // exceed theirs.
     void findContacts(const SelfStep& step, SelfStepLimits limits, ThreadTeam& threads, std::vector<Contact>& contacts);
 
+    // Computes which pairs of patches are smooth in the step, for isSmooth(); cull() does so, too.
+    void checkSmooth(const SelfStep& step, ThreadTeam& threads);
+    // Returns whether cull() leaves out a pair of features because their patches lie smoothly.
+    bool isSmooth(const FeatureTest& pair) const;
     // Copies the pairs of the last cull(), in any order; false, with none copied, if they exceeded the limit.
     bool copyTests(std::uint64_t limit, std::vector<FeatureTest>& tests) const;
 
@@ -46,6 +50,7 @@ public:
     }
 
 private:
+    void listOwners(const MeshPool& cloths);
     bool isWorth(const SelfStep& step) const;  // to wake threads
     void pack(const SelfStep& step, ThreadTeam& threads);
     // Culls these patches against all, with room for as many tests as the list has. Returns how many tests there are.
@@ -54,7 +59,8 @@ private:
     const CpuKernels* m_kernels;
     std::uint32_t m_revision = 0;
     Patches m_layout;
-    std::vector<std::uint32_t> m_vertexIds, m_edgeIds;  // a face's owner is the face itself
+    std::vector<std::uint32_t> m_vertexIds, m_edgeIds;                         // a face's owner is the face itself
+    std::vector<std::uint32_t> m_facePatches, m_vertexPatches, m_edgePatches;  // by feature
     std::vector<std::uint32_t> m_faceNodes, m_edgeNodes;
     std::vector<float> m_faceBoxes, m_vertexBoxes, m_edgeBoxes, m_wideNodes;
     SelfPatches m_patches = {};  // all of that, for kernels

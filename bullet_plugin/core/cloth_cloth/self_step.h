@@ -36,8 +36,6 @@ struct SelfStep
     SelfView m_view;
     const SelfReach& m_reach;
     const std::vector<float>& m_obstacleRadius;  // m, reach of the obstacle search, which counts invalid nodes; or -1
-    // Drops pairs that surely give no contact; set in searches for contacts only.
-    bool m_dropsFar = false;
     float m_smoothShare = 0;  // pairs of patches that keep this share of their distance at rest are left out; 0: none
 
     // Positions where volumes over the step begin: those of the end in a discrete step.

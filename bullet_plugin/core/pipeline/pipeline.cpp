@@ -336,6 +336,11 @@ SolveStage* Pipeline::solveStage(std::size_t nodes)
     return m_implementation->m_backends.solveStage(nodes);
 }
 
+std::shared_ptr<Device> Pipeline::searchDevice() const
+{
+    return m_implementation->m_backends.searchDevice();
+}
+
 bool Pipeline::waitForDevice()
 {
     Device* const device = m_implementation->m_backends.device();

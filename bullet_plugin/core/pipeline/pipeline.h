@@ -26,6 +26,7 @@
 
 namespace drape
 {
+class Device;
 class MeshProbe;
 class SolveStage;
 struct Scene;
@@ -167,6 +168,8 @@ public:
     // Returns the stage that solves cloths on a device; null if the host should (Settings::m_solverPlace). nodes: the
     // number in all cloths.
     SolveStage* solveStage(std::size_t nodes);
+    // Returns the device for searches among cloths (DeviceClothSearch); null if the host should make them.
+    std::shared_ptr<Device> searchDevice() const;
     // Waits for all work enqueued so far. Returns false without a device, or if it failed.
     bool waitForDevice();
     // Returns how often the host has waited for the device; 0 without one.

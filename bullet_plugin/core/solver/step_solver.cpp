@@ -191,6 +191,7 @@ void StepSolver::sweepInTurns()
             if (m_rows) m_rows->project(1, DRAPE_TURN_RELAXATION);
         }
     }
+    if (m_rows) m_rows->end(perPushOfRows(false));
 }
 
 // Returns the first cloth with rows of cloth with cloth. Its substeps stand for those of all of them.
@@ -213,15 +214,16 @@ float StepSolver::perPushOfRows(bool closing) const
 void StepSolver::beginRows(int iteration)
 {
     const SolverCloth& first = firstWithRows();
-    m_rows->begin(passedAfter(first, iteration), substepTime(first), perPushOfRows(false));
+    m_rows->begin(passedAfter(first, iteration), substepTime(first));
 }
 
 // Projects rows of cloth with cloth until they hold, or kClosingRowSweeps times. Contacts with obstacles follow.
 void StepSolver::closeRows()
 {
     if (!m_rows) return;
-    m_rows->begin(1, 0, perPushOfRows(true));
+    m_rows->begin(1, 0);
     m_rows->project(kClosingRowSweeps, 1, kTolerated, kClosingTolerance);
+    m_rows->end(perPushOfRows(true));
 }
 
 // Runs an iteration's limits and contact sweeps.

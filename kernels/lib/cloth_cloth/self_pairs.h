@@ -15,9 +15,7 @@ typedef struct SelfCloth
     __global const Edge* m_edges;
     __global const float* m_start;
     __global const float* m_end;
-    float m_radius, m_thickness;   // m
-    __global const float* m_rest;  // on the host; null: pairs are listed by their volumes alone
-    float m_reachScale;            // contacts reach to a pair's thickness times this
+    float m_radius, m_thickness;  // m
 } SelfCloth;
 
 // Returns whether all nodes of two features are valid, and the features' volumes overlap: see nodeVolumesOverlap().
@@ -63,71 +61,6 @@ static int volumesOverlap(const Vec3 from[4], const Vec3 to[4], const int split,
 }
 #endif
 
-#ifndef __OPENCL_VERSION__
-// Returns the middle of two points.
-static Vec3 middle(const Vec3 a, const Vec3 b)
-{
-    return vec3Scale(vec3Add(a, b), 0.5f);
-}
-
-// Returns a point of a feature with these nodes: a corner, then the middle of a side.
-static Vec3 samplePoint(const Vec3* nodes, const int count, const int sample)
-{
-    if (sample < count) return nodes[sample];
-    return middle(nodes[sample - count], nodes[sample - count + 1 < count ? sample - count + 1 : 0]);
-}
-
-// Padding in provenFar() for rounding, as a share of lengths.
-#define DRAPE_FAR_PAD 1e-4f
-
-// Returns whether two features surely give no contact, with the thickness that their distance at rest leaves them. One
-// direction must separate them at the start and at the end, and so on the whole way, by more than their contacts reach.
-// The direction joins two of the features' corners and middles, the two that are nearest at rest. nodes, split: see
-// nodeVolumesOverlap(). For the host alone: devices do not ask, and the code would cost them registers.
-static int provenFar(const SelfCloth* cloth, const uint nodes[4], const Vec3 from[4], const Vec3 to[4], const int split)
-{
-    Vec3 rest[4], now[4];
-    for (int k = 0; k < 4; ++k)
-    {
-        rest[k] = vec3Sub(vec3Load(cloth->m_rest, nodes[k]), vec3Load(cloth->m_rest, nodes[0]));
-        now[k] = vec3Add(vec3Sub(from[k], from[0]), vec3Sub(to[k], from[0]));
-    }
-    const int others = 4 - split;
-    int first = 0, second = 0;
-    float least2 = DRAPE_INFINITY;
-    for (int i = 0; i < 2 * split - 1; ++i)
-        for (int j = 0; j < (others == 3 ? 6 : 3); ++j)
-        {
-            const Vec3 offset = vec3Sub(samplePoint(rest + split, others, j), samplePoint(rest, split, i));
-            const float distance2 = vec3Dot(offset, offset);
-            if (!(distance2 < least2)) continue;
-            least2 = distance2;
-            first = i;
-            second = j;
-        }
-    const float own = selfThickness(cloth->m_thickness, drapeSqrt(least2) * (1.0f + DRAPE_FAR_PAD));
-    const Vec3 way = vec3Sub(samplePoint(now + split, others, second), samplePoint(now, split, first));
-    const float length = vec3Length(way);
-    float gap = DRAPE_INFINITY, size = 0.0f;
-    for (int end = 0; end < 2; ++end)
-    {
-        float most = -DRAPE_INFINITY, least = DRAPE_INFINITY;
-        for (int k = 0; k < 4; ++k)
-        {
-            const Vec3 offset = vec3Sub(end ? to[k] : from[k], end ? to[0] : from[0]);
-            const float along = vec3Dot(way, offset);
-            size = drapeMax(size, vec3Norm1(offset));
-            if (k < split)
-                most = drapeMax(most, along);
-            else
-                least = drapeMin(least, along);
-        }
-        gap = drapeMin(gap, least - most);
-    }
-    return gap > length * (own * cloth->m_reachScale * (1.0f + DRAPE_FAR_PAD) + DRAPE_FAR_PAD * size);
-}
-#endif
-
 // Lists a pair of features that share no node, and whose boxes overlap, if their volumes do. kind: DRAPE_SELF_TEST_NODE
 // …; a, b: node and face, or edges.
 static void keepPair(DRAPE_GROUP_MEMORY SimdGroup* group, const SelfCloth* cloth, const uint a, const uint b,
@@ -155,9 +88,6 @@ static void keepPair(DRAPE_GROUP_MEMORY SimdGroup* group, const SelfCloth* cloth
         from[k] = vec3Load(cloth->m_start, nodes[k]);
         to[k] = vec3Load(cloth->m_end, nodes[k]);
     }
-#ifndef __OPENCL_VERSION__
-    if (cloth->m_rest && provenFar(cloth, nodes, from, to, edges ? 2 : 1)) return;
-#endif
     if (!volumesOverlap(from, to, edges ? 2 : 1, cloth->m_radius)) return;
     FeatureTest test;
     test.m_cloth = a;

@@ -43,8 +43,6 @@ typedef struct SelfPatches
     DRAPE_GLOBAL float* m_edgeBoxes;    // on a CPU
     DRAPE_GLOBAL float* m_wideNodes;
     SmoothView m_smooth;
-    const DRAPE_GLOBAL float* m_rest;  // positions at rest, m; null if pairs are listed by their volumes alone
-    float m_reachScale;
 } SelfPatches;
 
 // Lengths per cloth, m: half the reach (negative: no self collision in the step), the thickness, the reach of the

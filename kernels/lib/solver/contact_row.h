@@ -39,8 +39,23 @@ DRAPE_FUNCTION Vec3 rowPush(const ContactRow* row)
     return vec3AddScaled(row->m_held, row->m_normal, row->m_multiplier);
 }
 
-// Computes the push that makes the row hold, or takes back an earlier push that is not needed any more. Friction
-// removes the point's motion since the step's start along the surface, relative to the obstacle, up to Coulomb's bound.
+// Returns the push that makes a plane hold, kg m, or takes back an earlier push that is not needed any more. slid: m,
+// motion along the surface since the step's start, which friction removes up to Coulomb's bound. more: kg m, along the
+// normal. multiplier, held: of the row, which grow by what is returned.
+DRAPE_FUNCTION Vec3 pushPlane(Vec3 normal, Vec3 slid, float more, float inverseMobility, float friction,
+                              float* multiplier, Vec3* held)
+{
+    const float before = *multiplier, pushed = drapeMax(0.0f, before + more);
+    Vec3 now = vec3AddScaled(*held, slid, -inverseMobility);
+    const float most = friction * pushed, wanted2 = vec3Dot(now, now);
+    if (wanted2 > most * most) now = vec3Scale(now, most / drapeSqrt(wanted2));
+    const Vec3 shift = vec3AddScaled(vec3Sub(now, *held), normal, pushed - before);
+    *multiplier = pushed;
+    *held = now;
+    return shift;
+}
+
+// Computes the push of a row; see pushPlane(). Friction acts on the point's motion relative to the obstacle.
 // displacement: m, of the row's point. tolerated: m, violation that remains. relaxation: share of the rest that is
 // corrected. Returns whether there is anything to do; `worst` grows to the violation that a push can correct. shift: kg
 // m; a node moves by its share of it. A row with NaN does nothing.
@@ -52,14 +67,9 @@ DRAPE_FUNCTION int pushRow(ContactRow* row, Vec3 displacement, float passed, flo
     const float violation = row->m_level - (1.0f - passed) * row->m_advance - along - tolerated;
     if (!(violation > 0.0f) && !(row->m_multiplier > 0.0f)) return 0;
     *worst = drapeMax(*worst, (violation + tolerated) * row->m_mended);
-    const float pushed = drapeMax(0.0f, row->m_multiplier + relaxation * violation * row->m_inverseMobility);
     const Vec3 slid = vec3Sub(vec3AddScaled(displacement, normal, -along), vec3Scale(row->m_carried, passed));
-    Vec3 held = vec3AddScaled(row->m_held, slid, -row->m_inverseMobility);
-    const float most = row->m_friction * pushed, wanted2 = vec3Dot(held, held);
-    if (wanted2 > most * most) held = vec3Scale(held, most / drapeSqrt(wanted2));
-    *shift = vec3AddScaled(vec3Sub(held, row->m_held), normal, pushed - row->m_multiplier);
-    row->m_multiplier = pushed;
-    row->m_held = held;
+    *shift = pushPlane(normal, slid, relaxation * violation * row->m_inverseMobility, row->m_inverseMobility,
+                       row->m_friction, &row->m_multiplier, &row->m_held);
     return 1;
 }
 

@@ -75,9 +75,8 @@ void ClothRows::add(const ClothContact& contact)
     row.m_gap0 = contact.m_gap0;
     row.m_thickness = contact.m_thickness;
     row.m_distance = contact.m_thickness + targetGap(gap, 0.0f, contact.m_thickness);
-    row.m_row.m_normal = contact.m_normal;
-    row.m_row.m_friction = contact.m_friction;
-    row.m_row.m_mended = 1.0f;
+    row.m_normal = contact.m_normal;
+    row.m_friction = contact.m_friction;
     m_rows.push_back(row);
 }
 
@@ -126,16 +125,19 @@ void ClothRows::arrange(const std::vector<Vec3>& positions)
     std::partial_sum(m_firsts.begin(), m_firsts.end(), m_firsts.begin());
     m_unordered.swap(m_rows);
     m_rows.resize(m_unordered.size());
-    m_nearEnds.assign(m_firsts.begin(), m_firsts.end() - 1);
+    m_actingEnds.assign(m_firsts.begin(), m_firsts.end() - 1);
     for (const Row& row : m_unordered)
-        m_rows[m_nearEnds[row.m_group]++] = row;
-    m_near.resize(m_rows.size());
+        m_rows[m_actingEnds[row.m_group]++] = row;
+    m_actingEnds.assign(m_firsts.begin(), m_firsts.end() - 1);
+    m_acting.resize(m_rows.size());
+    m_actingRows.resize(m_rows.size());
     m_worst.resize(m_parts.groupCount());
 }
 
 // Takes the row's plane between the nearest points of the features as they are.
-void ClothRows::takePlane(Row& row, float passed)
+ClothRows::Acting ClothRows::takePlane(Row& row, float passed)
 {
+    Acting acting = {};
     Vec3 positions[4], offset = vec3(0.0f, 0.0f, 0.0f), apart = offset;
     for (int k = 0; k < 4; ++k)
         positions[k] = vec3Add(row.m_starts[k], row.m_nodes[k]->m_displacement);
@@ -147,95 +149,83 @@ void ClothRows::takePlane(Row& row, float passed)
         apart = vec3AddScaled(apart, vec3Sub(positions[k], positions[0]), row.m_weights[k]);
         offset = vec3AddScaled(offset, vec3Sub(row.m_starts[k], row.m_starts[0]), row.m_weights[k]);
         mobility += row.m_weights[k] * row.m_weights[k] * row.m_inverseMasses[k];
+        acting.m_nodes[k] = row.m_nodes[k];
+        acting.m_weights[k] = row.m_weights[k];
+        acting.m_shares[k] = row.m_weights[k] * row.m_inverseMasses[k];
     }
     const float distance = vec3Length(apart);
     if (distance > kSureDistance * row.m_thickness)
     {
         // Features pass each other where both are nearest inside. A node beside a face went around it.
         const bool inside = std::all_of(row.m_weights, row.m_weights + 4, [](float weight) { return weight != 0.0f; });
-        const bool hasPassed = inside && vec3Dot(apart, row.m_row.m_normal) < 0.0f;
-        row.m_row.m_normal = vec3Scale(apart, (hasPassed ? -1.0f : 1.0f) / distance);
+        const bool hasPassed = inside && vec3Dot(apart, row.m_normal) < 0.0f;
+        row.m_normal = vec3Scale(apart, (hasPassed ? -1.0f : 1.0f) / distance);
     }
+    row.m_inverseMobility = mobility > 0.0f ? 1.0f / mobility : 0.0f;
     const float distance0 = std::min(row.m_gap0, row.m_distance);
-    row.m_row.m_inverseMobility = mobility > 0.0f ? 1.0f / mobility : 0.0f;
-    row.m_row.m_level = distance0 + passed * (row.m_distance - distance0) - vec3Dot(row.m_row.m_normal, offset);
+    acting.m_normal = row.m_normal;
+    acting.m_level = distance0 + passed * (row.m_distance - distance0) - vec3Dot(row.m_normal, offset);
+    acting.m_inverseMobility = row.m_inverseMobility;
+    acting.m_friction = row.m_friction;
+    acting.m_thickness = row.m_thickness;
+    return acting;
 }
 
-// Returns the row's displacement, m.
-Vec3 ClothRows::wayOf(const Row& row)
+// Returns the displacement of one feature's point from the other's, m.
+Vec3 ClothRows::wayOf(const Acting& acting)
 {
     Vec3 way = vec3(0.0f, 0.0f, 0.0f);
     for (int k = 0; k < 4; ++k)
-        way = vec3AddScaled(way, row.m_nodes[k]->m_displacement, row.m_weights[k]);
+        way = vec3AddScaled(way, acting.m_nodes[k]->m_displacement, acting.m_weights[k]);
     return way;
 }
 
-bool ClothRows::isNear(const Row& row)
-{
-    const float violation = row.m_row.m_level - vec3Dot(row.m_row.m_normal, wayOf(row));
-    return row.m_row.m_inverseMobility > 0.0f && violation > -kNearBy * row.m_thickness;
-}
-
 // Sets the pushes with which a substep of `time` seconds starts.
-void ClothRows::repeat(Row& row, float time)
+void ClothRows::repeat(const Row& row, float time, Acting& acting)
 {
-    ContactRow& pushed = row.m_row;
     const float scale = kRepeatedShare * time * time;
-    pushed.m_multiplier = scale * row.m_kept.m_push;
+    acting.m_multiplier = scale * row.m_kept.m_push;
     const Vec3 held = vec3Scale(row.m_kept.m_held, scale);
-    pushed.m_held = vec3AddScaled(held, pushed.m_normal, -vec3Dot(held, pushed.m_normal));
+    acting.m_held = vec3AddScaled(held, acting.m_normal, -vec3Dot(held, acting.m_normal));
 }
 
-// Adds what the last phase pushed to the row's impulse, and keeps it as forces if the phase had a time.
-void ClothRows::endPhase(Row& row) const
-{
-    const ContactRow& pushed = row.m_row;
-    if (pushed.m_multiplier > 0.0f) row.m_impulse = vec3AddScaled(row.m_impulse, rowPush(&pushed), m_perPush);
-    if (!(m_time > 0.0f)) return;
-    const float perSquare = 1.0f / (m_time * m_time);
-    row.m_kept.m_push = pushed.m_multiplier * perSquare;
-    row.m_kept.m_held = vec3Scale(pushed.m_held, perSquare);
-}
-
-void ClothRows::begin(float passed, float time, float perPush)
+void ClothRows::begin(float passed, float time)
 {
     const auto beginGroup = [&](std::size_t group)
     {
-        m_nearEnds[group] = m_firsts[group];
+        std::size_t& end = m_actingEnds[group] = m_firsts[group];
         for (std::size_t i = m_firsts[group]; i < m_firsts[group + 1]; ++i)
         {
             Row& row = m_rows[i];
-            endPhase(row);
-            row.m_row.m_multiplier = 0.0f;
-            row.m_row.m_held = vec3(0.0f, 0.0f, 0.0f);
-            takePlane(row, passed);
-            if (!isNear(row)) continue;
-            m_near[m_nearEnds[group]++] = std::uint32_t(i);
-            if (time > 0.0f) repeat(row, time);
+            Acting& acting = m_acting[end] = takePlane(row, passed);
+            const bool isNear = acting.m_level - vec3Dot(acting.m_normal, wayOf(acting)) > -kNearBy * row.m_thickness;
+            const bool acts = isNear && acting.m_inverseMobility > 0.0f;
+            if (acts) m_actingRows[end++] = std::uint32_t(i);
+            if (!(time > 0.0f)) continue;
+            if (acts) repeat(row, time, acting);
+            row.m_kept.m_push = 0.0f;
+            row.m_kept.m_held = vec3(0.0f, 0.0f, 0.0f);
         }
     };
     m_climb.run(threads(), beginGroup);
     m_time = time;
-    m_perPush = perPush;
     if (!(time > 0.0f)) return;
-    const auto pushGroup = [&](std::size_t group)
+    const auto push = [](Acting& acting, std::uint32_t)
     {
-        for (std::size_t i = m_firsts[group]; i < m_nearEnds[group]; ++i)
-        {
-            Row& row = m_rows[m_near[i]];
-            if (row.m_row.m_multiplier > 0.0f)
-                shift(row, vec3AddScaled(row.m_row.m_held, row.m_row.m_normal, row.m_row.m_multiplier));
-        }
+        if (acting.m_multiplier > 0.0f)
+            shift(acting, vec3AddScaled(acting.m_held, acting.m_normal, acting.m_multiplier));
     };
-    m_climb.run(threads(), pushGroup);
+    m_climb.run(threads(), [&](std::size_t group) { forActing(group, push); });
 }
 
 // Moves the row's nodes. by: kg m.
-void ClothRows::shift(Row& row, Vec3 by)
+void ClothRows::shift(Acting& acting, Vec3 by)
 {
     for (int k = 0; k < 4; ++k)
-        if (row.m_inverseMasses[k] > 0.0f)
-            nodeShift(row.m_nodes[k], row.m_states[k], vec3Scale(by, row.m_weights[k] * row.m_inverseMasses[k]));
+        if (acting.m_shares[k] != 0.0f)
+            acting.m_nodes[k]->m_displacement =
+                vec3AddScaled(acting.m_nodes[k]->m_displacement, by, acting.m_shares[k]);
+    acting.m_hasMoved = 1;
 }
 
 void ClothRows::project(int sweeps, float relaxation, float tolerated, float enough)
@@ -243,15 +233,18 @@ void ClothRows::project(int sweeps, float relaxation, float tolerated, float eno
     const auto projectGroup = [&](std::size_t group)
     {
         float worst = 0.0f;
-        for (std::size_t i = m_firsts[group]; i < m_nearEnds[group]; ++i)
+        const auto projectRow = [&](Acting& acting, std::uint32_t)
         {
-            Row& row = m_rows[m_near[i]];
-            float violation = 0.0f;
-            Vec3 by;
-            if (pushRow(&row.m_row, wayOf(row), 1.0f, tolerated * row.m_thickness, relaxation, &violation, &by))
-                shift(row, by);
-            worst = std::max(worst, violation / row.m_thickness);
-        }
+            const Vec3 way = wayOf(acting);
+            const float along = vec3Dot(acting.m_normal, way);
+            const float violation = acting.m_level - along, excess = violation - tolerated * acting.m_thickness;
+            if (!(excess > 0.0f) && !(acting.m_multiplier > 0.0f)) return;
+            worst = std::max(worst, violation / acting.m_thickness);
+            shift(acting, pushPlane(acting.m_normal, vec3AddScaled(way, acting.m_normal, -along),
+                                    relaxation * excess * acting.m_inverseMobility, acting.m_inverseMobility,
+                                    acting.m_friction, &acting.m_multiplier, &acting.m_held));
+        };
+        forActing(group, projectRow);
         m_worst[group] = worst;
     };
     for (int i = 0; i < sweeps; ++i)
@@ -261,17 +254,37 @@ void ClothRows::project(int sweeps, float relaxation, float tolerated, float eno
     }
 }
 
+// Adds what the phase pushed to the row's impulse, and keeps it as forces if the phase had a time.
+void ClothRows::endRow(Row& row, const Acting& acting, float perPush) const
+{
+    if (acting.m_hasMoved)
+        for (int k = 0; k < 4; ++k)
+            if (acting.m_shares[k] != 0.0f) row.m_states[k]->m_shifted |= DRAPE_NODE_SHIFTED;
+    const Vec3 push = vec3AddScaled(acting.m_held, acting.m_normal, acting.m_multiplier);
+    if (acting.m_multiplier > 0.0f) row.m_impulse = vec3AddScaled(row.m_impulse, push, perPush);
+    if (!(m_time > 0.0f)) return;
+    const float perSquare = 1.0f / (m_time * m_time);
+    row.m_kept.m_push = acting.m_multiplier * perSquare;
+    row.m_kept.m_held = vec3Scale(acting.m_held, perSquare);
+}
+
+void ClothRows::end(float perPush)
+{
+    const auto endOne = [&](const Acting& acting, std::uint32_t row) { endRow(m_rows[row], acting, perPush); };
+    m_climb.run(threads(), [&](std::size_t group) { forActing(group, endOne); });
+}
+
 // Removes from the nodes' velocities what the row gained; see limitSpeeds().
 void ClothRows::limitSpeed(Row& row, float perSecond)
 {
     const float recovered = row.m_distance - row.m_gap0;
-    if (!(row.m_gap0 < row.m_thickness) || !(row.m_row.m_inverseMobility > 0.0f)) return;
+    if (!(row.m_gap0 < row.m_thickness) || !(row.m_inverseMobility > 0.0f)) return;
     float speed = 0.0f;
     for (int k = 0; k < 4; ++k)
-        speed += row.m_weights[k] * vec3Dot(row.m_states[k]->m_velocity, row.m_row.m_normal);
+        speed += row.m_weights[k] * vec3Dot(row.m_states[k]->m_velocity, row.m_normal);
     const float excess = std::min(speed, std::max(0.0f, recovered) * perSecond);
     if (!(excess > 0.0f)) return;
-    const Vec3 loss = vec3Scale(row.m_row.m_normal, -excess * row.m_row.m_inverseMobility);
+    const Vec3 loss = vec3Scale(row.m_normal, -excess * row.m_inverseMobility);
     row.m_impulse = vec3Add(row.m_impulse, loss);
     for (int k = 0; k < 4; ++k)
         if (row.m_inverseMasses[k] > 0.0f)

@@ -8,7 +8,7 @@
 // Rows of features that are far apart then take no part until the next begin(). A step recovers a tenth of the
 // thickness of what was missing at its start, evenly, so that its end can take back the speed. Cloth in many folds has
 // no room for more, and would fly apart. Every push is given to one feature and taken from the other, so momentum is
-// kept. Friction is Coulomb's. Cost: some 60 ns per row and sweep. Lengths in metres, world frame.
+// kept. Friction is Coulomb's. Lengths in metres, world frame.
 #pragma once
 
 #include <cstddef>
@@ -52,11 +52,13 @@ public:
     void arrange(const std::vector<Vec3>& positions);
     // Begins a phase: takes the planes where the nodes are now. passed: share of the step that has passed at the
     // phase's end. time: s, of the phase's substep, which starts with the pushes of the one before; 0: with none.
-    // perPush: 1/s, the velocity that the caller gives a node per metre by which the phase moves it; for forImpulses().
-    void begin(float passed, float time, float perPush = 0);
+    void begin(float passed, float time);
     // Projects the rows that take part `sweeps` times, or until no violation exceeds `enough`. relaxation: share of a
     // violation that is corrected. tolerated: violation that may remain. All are shares of the thickness.
     void project(int sweeps, float relaxation, float tolerated = 0, float enough = 0);
+    // Ends the phase: marks the nodes that it moved. perPush: 1/s, the velocity that the caller gives a node per metre
+    // by which the phase moved it.
+    void end(float perPush);
     // Removes from the nodes' velocities what rows gained by recovering a depth that the step began with. perSecond:
     // 1/s, steps per second.
     void limitSpeeds(float perSecond);
@@ -66,10 +68,7 @@ public:
     void forImpulses(const Visit& visit) const
     {
         for (const Row& row : m_rows)
-        {
-            const Vec3 impulse = vec3AddScaled(row.m_impulse, rowPush(&row.m_row), m_perPush);
-            if (vec3Dot(impulse, impulse) > 0) visit(row.m_index, impulse);
-        }
+            if (vec3Dot(row.m_impulse, row.m_impulse) > 0) visit(row.m_index, row.m_impulse);
     }
 
 private:
@@ -96,19 +95,41 @@ private:
         float m_gap0;       // m
         float m_distance;   // m, least at the step's end
         float m_thickness;  // m
+        float m_friction;
+        float m_inverseMobility;  // kg
         std::uint32_t m_index;
-        Vec3 m_impulse;    // N s, given in the phases before this one
-        ContactRow m_row;  // its normal, level, multiplier and friction; nodes and weights are those above
+        Vec3 m_normal;   // unit, of the phase's plane
+        Vec3 m_impulse;  // N s, given in the phases that have ended
     };
 
-    static bool isNear(const Row& row);
-    static Vec3 wayOf(const Row& row);
-    static void takePlane(Row& row, float passed);
-    static void repeat(Row& row, float time);
-    void endPhase(Row& row) const;
+    // A row that takes part in a phase: what a sweep reads and writes, side by side.
+    struct Acting
+    {
+        SolverNode* m_nodes[4];
+        float m_weights[4];
+        float m_shares[4];  // by node, displacement per unit of the multiplier, 1/kg
+        Vec3 m_normal;
+        float m_level;       // m, least displacement along the normal
+        Vec3 m_held;         // friction, in units of the multiplier
+        float m_multiplier;  // kg m
+        float m_inverseMobility, m_friction, m_thickness;
+        std::uint32_t m_hasMoved;  // nodes, in this phase
+    };
+
+    static Vec3 wayOf(const Acting& acting);
+    static Acting takePlane(Row& row, float passed);
+    static void repeat(const Row& row, float time, Acting& acting);
+    void endRow(Row& row, const Acting& acting, float perPush) const;
     void findKept();
-    static void shift(Row& row, Vec3 by);
+    static void shift(Acting& acting, Vec3 by);
     std::uint32_t groupOf(const Row& row) const;
+    // Calls work(acting row, index of its row) for the group's rows that take part.
+    template <class Work>
+    void forActing(std::size_t group, const Work& work)
+    {
+        for (std::size_t i = m_firsts[group]; i < m_actingEnds[group]; ++i)
+            work(m_acting[i], m_actingRows[i]);
+    }
     static void limitSpeed(Row& row, float perSecond);
     ThreadTeam* threads() const;
 
@@ -118,12 +139,12 @@ private:
     ClothParts m_parts;
     GroupClimb m_climb;
     std::vector<Row> m_rows, m_unordered;
-    std::vector<Kept> m_kept;             // sorted by key; the last step's
-    float m_time = 0;                     // s, of the last phase's substep; 0: none
-    std::vector<std::size_t> m_firsts;    // by group, the first of its rows; then the end
-    std::vector<std::uint32_t> m_near;    // by group, from m_firsts on: rows that take part
-    std::vector<std::size_t> m_nearEnds;  // by group, in m_near
-    float m_perPush = 0;                  // 1/s, of the phase
-    std::vector<float> m_worst;           // by group, the violation that the last sweep met
+    std::vector<Kept> m_kept;           // sorted by key; the last step's
+    float m_time = 0;                   // s, of the phase's substep; 0: none
+    std::vector<std::size_t> m_firsts;  // by group, the first of its rows; then the end
+    std::vector<Acting> m_acting;       // by group, from m_firsts on: rows that take part
+    std::vector<std::uint32_t> m_actingRows;
+    std::vector<std::size_t> m_actingEnds;  // by group, in m_acting
+    std::vector<float> m_worst;             // by group, the violation that the last sweep met
 };
 }  // namespace drape
