@@ -55,6 +55,7 @@ typedef struct SolveCloth
     float m_substepTime;        // s
     float m_perStep;            // 1/s
     float m_pathShare;          // s, see nodeBegin()
+    float m_spread;             // see Substeps::spread()
     float m_perCorrection;      // 1/s
     float m_undamped;           // share of a velocity that damping leaves in a substep
     float m_perShift;           // 1/s, velocity per metre of a closing shift

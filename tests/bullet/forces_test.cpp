@@ -2,10 +2,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "BulletSoftBody/btSoftBodyHelpers.h"
+#include "scenes/shapes.h"
 #include "tests/bullet/drop_world.h"
+#include "tests/support/backends.h"
 
 namespace drape::test
 {
@@ -41,6 +44,14 @@ double mostEnergy(DropWorld& world, const btSoftBody& body, int steps)
         world.step();
         most = std::max(most, kineticEnergy(body));
     }
+    return most;
+}
+
+double largestDifference(const std::vector<float>& a, const std::vector<float>& b)
+{
+    double most = 0;
+    for (std::size_t i = 0; i < a.size(); ++i)
+        most = std::max(most, std::abs(double(a[i]) - double(b[i])));
     return most;
 }
 
@@ -112,6 +123,31 @@ TEST(Forces, OfSpringsAddNoEnergy)
     }
     EXPECT_LT(most, 1.5 * before);
     EXPECT_GT(most, 0.5 * before);
+}
+
+// Cloth that a force holds against gravity neither rises nor sinks, wherever it is solved.
+TEST(Forces, ThatBalanceGravityHoldTheCloth)
+{
+    for (const SolverPlace place : {SolverPlace::Host, SolverPlace::Device})
+        for (const btScalar damping : {btScalar(0), btScalar(0.1)})
+        {
+            Plugin plugin(settingsFor(place));
+            MeshShape box(makeBox(1, 1, 1));
+            DropWorld world(&plugin);
+            world.addObstacle(box.shape(), btTransform(btQuaternion::getIdentity(), btVector3(0, -3, 0)));
+            ClothSpec spec;
+            spec.m_damping = damping;
+            btSoftBody& cloth = world.addCloth(spec);
+            const std::vector<float> before = positionsOf(cloth);
+            const btVector3 lift = -world.world().getGravity() * cloth.getTotalMass() / btScalar(cloth.m_nodes.size());
+            for (int step = 0; step < 120; ++step)
+            {
+                cloth.addForce(lift);
+                world.step();
+            }
+            EXPECT_LT(largestDifference(before, positionsOf(cloth)), 1e-4) << int(place);
+            EXPECT_LT(rmsSpeed(cloth), 1e-3) << int(place);
+        }
 }
 
 // A constant force has Bullet's effect: the nodes' path is Bullet's.

@@ -117,7 +117,7 @@ void SubstepBody::beforePrediction(const btSoftBody& body, ThreadTeam* threads)
 void SubstepBody::afterPrediction(btSoftBody& body, ThreadTeam* threads)
 {
     if (!(body.m_sst.sdt > 0) || m_velocities.size() != nodeCount(body)) return;
-    const btScalar shift = pathShift(body), supportShift = SubstepBody::supportShift(body);
+    const btScalar shift = spread() * pathShift(body), supportShift = SubstepBody::supportShift(body);
     const btScalar perSecond = body.m_sst.isdt;
     const btVector3 fall = body.m_worldInfo->m_gravity * body.m_sst.sdt;
     if (!m_isSupported) std::fill(m_supports.begin(), m_supports.end(), vec3(0, 0, 0));
@@ -129,8 +129,9 @@ void SubstepBody::afterPrediction(btSoftBody& body, ThreadTeam* threads)
         for (std::size_t i = first; i < last; ++i)
         {
             btSoftBody::Node& node = body.m_nodes[static_cast<int>(i)];
-            // All but gravity acts at the step's start, as with Bullet. A force of volume, pressure or a spring depends
-            // on the positions; spread over the substeps it would add energy in every step.
+            // Forces act at the step's start, as with Bullet, and gravity with them, so that they may balance. A force
+            // of volume, pressure or a spring depends on the positions; spread over the substeps it would add energy in
+            // every step. What cloth rests under is gravity.
             if (m_hasForces && node.m_im > 0) m_velocities[i] = node.m_v - fall;
             const btVector3 acceleration = (node.m_v - m_velocities[i]) * perSecond;
             m_accelerations[i] = vec3Of(acceleration);
@@ -151,7 +152,7 @@ void SubstepBody::leave(btSoftBody& body)
 {
     m_isPredicted = false;
     changeOver();
-    const btScalar shift = pathShift(body), supportShift = SubstepBody::supportShift(body);
+    const btScalar shift = spread() * pathShift(body), supportShift = SubstepBody::supportShift(body);
     for (std::size_t i = 0; fits(body) && i < m_accelerations.size(); ++i)
         body.m_nodes[static_cast<int>(i)].m_x -=
             vectorOf(m_accelerations[i]) * shift + vectorOf(m_supports[i]) * supportShift;
@@ -278,7 +279,7 @@ void SubstepBody::begin(const btSoftBody& body, ClothContacts* recorded, const C
         m_alone.m_perSecond = static_cast<float>(body.m_sst.isdt);
     }
     m_substeps.prepare(static_cast<float>(body.m_sst.sdt), substepsOf(body), static_cast<float>(body.m_cfg.kDP),
-                       m_accelerations, m_supports);
+                       m_accelerations, m_supports, float(spread()));
 }
 
 void SubstepBody::readPaths(const btSoftBody& body, ClothContacts* recorded, ThreadTeam* threads)

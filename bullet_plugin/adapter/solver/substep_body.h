@@ -47,6 +47,7 @@ public:
     {
         m_isPredicted = m_isOnDevice = true;
         m_isSupported = false;
+        m_hasForces = false;
     }
     // Returns whether the step has begun so, and the nodes have not come since.
     bool isOnDevice() const { return m_isOnDevice; }
@@ -115,12 +116,14 @@ private:
     void cutLinks(const btSoftBody& body);
     void sortLinks();
     void setLinks(const btSoftBody& body, ThreadTeam* threads);
+    // Returns Substeps::spread().
+    btScalar spread() const { return m_hasForces ? btScalar(0) : btScalar(1); }
 
     bool m_isPredicted = false;
     bool m_isOnDevice = false;            // the device predicts the nodes
     bool m_hasForces = false;             // the app's, of volume or of pressure
     std::vector<btVector3> m_velocities;  // before the prediction, m/s; with m_hasForces with what they add
-    std::vector<Vec3> m_accelerations;    // m/s², constant in the step
+    std::vector<Vec3> m_accelerations;    // m/s², constant in the step; with m_hasForces gravity
     std::vector<Vec3> m_supports;         // m/s², of the step before, then of this one
     bool m_isSupported = false;           // m_supports is of the step before
     std::vector<Prediction> m_predictions;

@@ -13,15 +13,18 @@ static void beginNodes(const Solve* solve, const SolveRange nodes)
         const NodePath path = solve->m_paths[i];
         nodeAt(solve, i)->m_inverseMass = path.m_freeMass;
         nodeBegin(nodeAt(solve, i), solve->m_states + i, path.m_vector,
-                  vec3Add(solve->m_accelerations[i], solve->m_supports[i]), cloth->m_perStep, cloth->m_pathShare);
+                  vec3AddScaled(solve->m_supports[i], solve->m_accelerations[i], cloth->m_spread), cloth->m_perStep,
+                  cloth->m_pathShare);
         solve->m_states[i].m_shifted = 0;
     }
 }
 
 static void advanceNodes(const Solve* solve, const SolveRange nodes)
 {
+    __global const SolveCloth* cloth = solve->m_cloth;
     forAll(i, nodes.m_first, nodes.m_first + nodes.m_count)
-        nodeAdvance(nodeAt(solve, i), solve->m_states + i, solve->m_accelerations[i], solve->m_cloth->m_substepTime);
+        nodeAdvance(nodeAt(solve, i), solve->m_states + i, vec3Scale(solve->m_accelerations[i], cloth->m_spread),
+                    cloth->m_substepTime);
 }
 
 static void endNodes(const Solve* solve, const SolveRange nodes)

@@ -101,6 +101,7 @@ void PackedStep::packCloth(std::size_t index, const ContactSource& source, const
     cloth.m_substepTime = substeps.substepTime();
     cloth.m_perStep = substeps.perStep();
     cloth.m_pathShare = substeps.pathTime();
+    cloth.m_spread = substeps.spread();
     cloth.m_perCorrection = 1 / substeps.correctionTime();
     cloth.m_undamped = substeps.undamped();
     cloth.m_perShift = contacts.m_perSecond * contacts.m_undamped;

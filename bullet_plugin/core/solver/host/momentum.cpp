@@ -60,7 +60,8 @@ bool sumUp(const SolverNodes& nodes, const Substeps& substeps, const Kept& kept,
         const bool isValid = positionIsValid(vec3Add(nodes.start(i), node.m_displacement));
         if (!(node.m_inverseMass > 0) || !isValid) return false;
         const double mass = 1 / double(node.m_inverseMass);
-        const Vec3d force = wide(substeps.accelerations()[i]), velocity = wide(nodes.velocity(i));
+        const Vec3d force = double(substeps.spread()) * wide(substeps.accelerations()[i]);
+        const Vec3d velocity = wide(nodes.velocity(i));
         const Vec3d start = wide(nodes.start(i)) - origin, moved = wide(node.m_displacement), end = start + moved;
         const Vec3d missing = mass * (perPath * wide(nodes.pathVector(i)) + perForce * force - velocity);
         const Vec3d momentum = mass * velocity, moment = mass * end;

@@ -33,9 +33,10 @@ void forNodes(std::size_t count, ThreadTeam* threads, const Work& work)
 }  // namespace
 
 void Substeps::prepare(float time, int count, float damping, const std::vector<Vec3>& accelerations,
-                       const std::vector<Vec3>& supports)
+                       const std::vector<Vec3>& supports, float spread)
 {
     m_time = time;
+    m_spread = spread;
     m_count = count;
     if (m_changesOver) m_leastRatio = kRatioAfterChange;
     m_correctionTime = m_changesOver ? std::max(time, m_correctionTime) : m_leastRatio * m_correctionTime;
@@ -58,15 +59,17 @@ void Substeps::begin(SolverNodes& nodes, ThreadTeam* threads)
              [&](std::size_t i)
              {
                  nodeBegin(nodes.nodes() + i, nodes.states() + i, nodes.pathVector(i),
-                           vec3Add(accelerations()[i], supports()[i]), perStep(), pathTime());
+                           vec3AddScaled(supports()[i], accelerations()[i], m_spread), perStep(), pathTime());
              });
 }
 
 void Substeps::advance(SolverNodes& nodes, ThreadTeam* threads)
 {
     forNodes(nodes.count(), threads,
-             [&](std::size_t i)
-             { nodeAdvance(nodes.nodes() + i, nodes.states() + i, accelerations()[i], substepTime()); });
+             [&](std::size_t i) {
+                 nodeAdvance(nodes.nodes() + i, nodes.states() + i, vec3Scale(accelerations()[i], m_spread),
+                             substepTime());
+             });
 }
 
 void Substeps::end(SolverNodes& nodes, ThreadTeam* threads) const

@@ -1,10 +1,10 @@
 // Moves the nodes of a cloth through a step in substeps of equal length, with its links.
 //
 // A node's path through the step is the parabola from its start to its end under constant acceleration, which includes
-// what contacts are expected to give. A substep moves every node along its velocity; then constraints correct the
-// positions, and the velocities follow (Macklin et al. 2019, Small Steps in Physics Simulation). Links keep the
-// stiffness that Bullet's iterations give them (link_strength.h). The same bits with any number of threads. Cost:
-// linear in nodes and links.
+// what contacts are expected to give. If the acceleration acted at the step's start, it is a line. A substep moves
+// every node along its velocity; then constraints correct the positions, and the velocities follow (Macklin et al.
+// 2019, Small Steps in Physics Simulation). Links keep the stiffness that Bullet's iterations give them
+// (link_strength.h). The same bits with any number of threads. Cost: linear in nodes and links.
 #pragma once
 
 #include <cstddef>
@@ -43,13 +43,15 @@ public:
     // Returns the share of the acceleration in a node's mean velocity, s.
     float pathTime() const { return pathShare(m_count) * m_time; }
     const Vec3* accelerations() const { return m_accelerations->data(); }
+    // Returns the share of the accelerations that acts in the substeps: 1, or 0 if all acted at the step's start.
+    float spread() const { return m_spread; }
     const Vec3* supports() const { return m_supports->data(); }
 
     // Prepares a step of `time` seconds (> 0) in `count` parts. damping: the share of a velocity that is lost in the
     // step, 0 to 1. accelerations: of the nodes, m/s²; supports: what their paths have beside these, m/s²
-    // (nodeSupport()). Both must stay in place until the last substep.
+    // (nodeSupport()). Both must stay in place until the last substep. spread: see spread().
     void prepare(float time, int count, float damping, const std::vector<Vec3>& accelerations,
-                 const std::vector<Vec3>& supports);
+                 const std::vector<Vec3>& supports, float spread = 1);
     // Records that another solver made the step before: it may have left other errors than substeps do. Call before
     // prepare().
     void changeOver() { m_changesOver = true; }
@@ -75,6 +77,7 @@ private:
     float m_time = 1;
     float m_correctionTime = 0;
     float m_undamped = 1;
+    float m_spread = 1;
     int m_count = 1;
     float m_leastRatio = 1;  // minimum of m_correctionTime, as a share of that of the step before
     bool m_changesOver = false;
