@@ -1,9 +1,13 @@
 #include "examples/window/options.h"
 
+#include <algorithm>
+
 #include <CLI/CLI.hpp>
 
 #include "examples/window/window_scenes.h"
 #include "tools/common/arguments.h"
+#include "tools/common/suggestion.h"
+#include "tools/scene_file/built_in_scene.h"
 
 namespace drape::window
 {
@@ -32,9 +36,10 @@ bool parse(int argc, const char* const* argv, Options& options, int& exitCode)
     CLI::App app("Shows cloth with Drape, or with Bullet's own collision, in a window.", "drape_window");
     std::vector<std::string> draws;
     std::string collision = "drape";
-    acceptOnly(app.add_option("--scene", options.m_scene, "scene to start with; --list-scenes names them"),
+    offerWords(app.add_option("--scene", options.m_scene, "built-in scene or scene file (JSON) to start with")
+                   ->type_name("FILE|NAME"),
                windowSceneNames());
-    app.add_flag("--list-scenes", options.m_listScenes, "list the scenes and exit");
+    app.add_flag("--list-scenes", options.m_listScenes, "list the built-in scenes and exit");
     acceptOnly(app.add_option("--collision", collision, "drape, or bullet for Bullet's own collision"),
                {"drape", "bullet"});
     acceptOnly(app.add_option("--draw", draws,
@@ -49,7 +54,7 @@ bool parse(int argc, const char* const* argv, Options& options, int& exitCode)
     const CLI::Validator width(wholeNumber(320, 7680), ""), height(wholeNumber(240, 4320), "");
     app.add_option("--width", options.m_width, "width of the window, pixels")->check(width);
     app.add_option("--height", options.m_height, "height of the window, pixels")->check(height);
-    app.add_option("--detail", options.m_detail, "fineness of the cloth, 1 to 8")
+    app.add_option("--detail", options.m_detail, "fineness of the cloth of a built-in scene, 1 to 8")
         ->check(CLI::Validator(wholeNumber(1, 8), ""));
     acceptOnly(app.add_option("--backend", options.m_backend, "auto, opencl, host or cost, as in cloth_drop"),
                {"auto", "opencl", "host", "cost"});
@@ -58,7 +63,10 @@ bool parse(int argc, const char* const* argv, Options& options, int& exitCode)
     const auto conflict = [&]
     {
         const bool endless = !options.m_screenshot.empty() && options.m_frames == 0;
-        return std::string(endless ? "--screenshot needs --frames, which says when it is taken" : "");
+        if (endless) return std::string("--screenshot needs --frames, which says when it is taken");
+        const std::vector<std::string>& names = windowSceneNames();
+        const bool isKnown = std::find(names.begin(), names.end(), options.m_scene) != names.end();
+        return isKnown || isSceneFile(options.m_scene) ? "" : "--scene: " + unknownWord(options.m_scene, names);
     };
     if (!parseArguments(app, argc, argv, conflict, exitCode)) return false;
     options.m_bullet = collision == "bullet";

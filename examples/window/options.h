@@ -9,7 +9,7 @@ namespace drape::window
 {
 struct Options
 {
-    std::string m_scene = "bunny";
+    std::string m_scene = "bunny";             // a built-in scene's name, or a scene file
     std::string m_backend = "auto", m_device;  // see tools/common/device_option.h
     std::string m_models;                      // folder with model files; empty: the usual ones
     std::string m_screenshot;                  // PNG written at the end; empty: none

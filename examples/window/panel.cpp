@@ -74,8 +74,8 @@ void drawShown(Choices& choices)
 void drawTimes(const Simulation& simulation)
 {
     heading("Times");
-    ImGui::Text("step %d", simulation.steps());
-    ImGui::Text("%6.2f ms  last step", simulation.stepMs());
+    ImGui::Text("frame %d", simulation.steps());
+    ImGui::Text("%6.2f ms  last frame", simulation.stepMs());
     ImGui::Text("%6.2f ms  mean of the last 120", simulation.meanStepMs());
     const std::array<float, 120>& history = simulation.history();
     const float most = *std::max_element(history.begin(), history.end());

@@ -42,7 +42,9 @@ void Simulation::step(bool records)
 {
     m_plugin.recordContacts(records);
     pullHeld();
-    m_stepMs = m_world->step(kDt);
+    m_stepMs = 0;
+    for (int part = 0; part < m_scene.m_stepsPerFrame; ++part)
+        m_stepMs += m_world->step(m_scene.m_frameTime / m_scene.m_stepsPerFrame);
     ++m_steps;
     std::rotate(m_history.begin(), m_history.begin() + 1, m_history.end());
     m_history.back() = float(m_stepMs);

@@ -23,14 +23,12 @@ struct Held
 class Simulation
 {
 public:
-    static constexpr double kDt = 1.0 / 60;  // s
-
     explicit Simulation(const Settings& settings) : m_plugin(settings) {}
 
     // Begins the scene anew. Bullet's world of another scene is left alive until the program ends: to free its distance
     // field takes up to minutes.
     void start(const ClothScene& scene, bool byBullet);
-    // Runs one step. Records impulses if `records`.
+    // Runs a frame of the scene. Records impulses if `records`.
     void step(bool records);
 
     const ClothScene& scene() const { return m_scene; }

@@ -2,6 +2,7 @@
 
 #include "scenes/models.h"
 #include "scenes/shapes.h"
+#include "tools/scene_file/built_in_scene.h"
 
 namespace drape::window
 {
@@ -28,6 +29,8 @@ void addSheet(int detail, float size, float height, ClothScene& scene)
     cloth.m_mass = 0.5;
     scene.m_cloths.push_back(std::move(cloth));
     scene.m_thickness = double(kThickness);
+    scene.m_stepsPerFrame = 1;
+    scene.m_iterations = 5;
 }
 }  // namespace
 
@@ -53,6 +56,14 @@ bool makeWindowScene(const std::string& name, int detail, const std::string& mod
     scene = ClothScene();
     scene.m_name = name;
     TriangleMesh mesh;
+    if (isSceneFile(name))
+    {
+        SceneFile file;
+        if (!readScene(name, file, error)) return false;
+        scene = std::move(file.m_scene);
+        scene.m_name = name;
+        return true;
+    }
     if (name == "bunny")
     {
         if (!makeModel("bunny", modelFolders(models), mesh, error)) return false;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "bullet_plugin/adapter/wiring/plugin_state.h"
+#include "bullet_plugin/core/backends/device_cloth_search.h"
 #include "oracle/self_intersections.h"
 #include "scenes/shapes.h"
 #include "tests/bullet/drop_world.h"
@@ -141,7 +142,7 @@ TEST(SelfCollision, ADeviceThatSearchesChangesNothing)
         MeshShape sphere(makeSphere(0.5f, 3));
         Layers layers(settingsFor(place), 3, 0.03f);
         layers.m_world.addObstacle(sphere.shape());
-        EXPECT_EQ(layers.m_plugin.state()->pipeline().searchDevice() != nullptr, place == SolverPlace::Device);
+        EXPECT_EQ(layers.m_plugin.state()->pipeline().searchDevice().m_device != nullptr, place == SolverPlace::Device);
         EXPECT_EQ(layers.run(60), 0u);
         EXPECT_GT(layers.m_plugin.statistics().m_selfContacts, 0u);
         ends.push_back(layers.positions());

@@ -17,6 +17,7 @@ import zlib
 WINDOW = sys.argv.pop(1)
 XVFB = shutil.which("Xvfb")
 BUNNY = "/usr/share/glmark2/models/bunny.obj"
+SCENES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "examples", "scenes")
 
 
 def read_png(path):
@@ -128,6 +129,10 @@ class Screenshots(unittest.TestCase):
         self.assertLess(self.count(plain, is_contact), 20)
         self.assertGreater(self.count(drawn, is_contact), 200)
 
+    def test_shows_a_scene_file(self):
+        pixels = self.shoot("window_file", "--scene", os.path.join(SCENES, "table.json"), "--frames", "5")
+        self.assertGreater(len(set(pixels)), 300)
+
     def test_shows_bullets_own_collision(self):
         pixels = self.shoot("window_bullet", "--scene", "ball", "--frames", "5", "--detail", "1",
                             "--collision", "bullet")
@@ -149,6 +154,11 @@ class Messages(unittest.TestCase):
         done = run(["--scene", "buny"])
         self.assertEqual(done.returncode, 2)
         self.assertIn("bunny", done.stderr)
+
+    def test_says_what_is_wrong_with_a_scene_file(self):
+        done = run(["--scene", os.path.join(SCENES, "missing.json")])
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("missing.json", done.stderr)
 
     def test_a_screenshot_needs_a_number_of_frames(self):
         done = run(["--screenshot", "x.png"])

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <cstring>
 
+#include "bullet_plugin/core/backends/device_cloth_search.h"
+#include "bullet_plugin/core/scene/patch_width.h"
 #include "scenes/cloth_grid.h"
 #include "scenes/random.h"
 #include "tests/support/backends.h"
@@ -21,9 +23,10 @@ constexpr std::uint64_t kNoLimit = 1u << 24;
 // Sheets above one another, as two sets with the same nodes: one on the host, one on a device.
 struct TwoSets
 {
-    TwoSets(int count, int nodes, std::shared_ptr<Device> device, const std::string& cacheFolder)
+    TwoSets(int count, int nodes, const std::shared_ptr<Device>& device, const std::string& cacheFolder)
     {
-        m_device.useDevice(std::move(device), cacheFolder);
+        m_device.useDevice({device, std::make_shared<ProgramSet>(*device, cacheFolder, std::vector<ProgramSet::Names>(),
+                                                                 patchDefines(*device))});
         assign(count, nodes);
     }
 
@@ -116,7 +119,7 @@ TEST_P(ClothSearch, FindsWhatTheHostFinds)
     sets.move(0.1f, 0, 0.001f, random);
     sets.compare();
     const std::size_t waits = device->waits();
-    sets.m_device.useDevice(nullptr, "none");
+    sets.m_device.useDevice({});
     sets.move(0.1f, 1, 0.001f, random);
     sets.compare();
     EXPECT_LE(device->waits(), waits + 1);

@@ -53,6 +53,7 @@ for program in "$@"; do
   case $name in
     cloth_drop)
       expect automatic : --mode a
+      expect twist : --scene twi
       expect automatic : --mode = a
       expect 'my cloth.obj' : --obstacle my
       expect bunny.obj : --obstacle bun ;;

@@ -20,7 +20,7 @@ public:
         else
             m_world.addMeshObstacle(scene);
         m_world.addCloths(scene, mode == BulletMode::SoftPair);
-        if (scene.m_self) m_world.useBulletsSelfCollision();
+        if (scene.m_self) m_world.useBulletsClothWithCloth();
     }
 
     StepTimes step() override

@@ -11,8 +11,6 @@ namespace
 {
 using Clock = std::chrono::steady_clock;
 
-constexpr int kNodesPerCluster = 16;
-
 double since(Clock::time_point start)
 {
     return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
@@ -151,13 +149,10 @@ void DropWorld::addSheet(const DropScene& scene, const TriangleMesh& sheet, bool
     m_world.addSoftBody(&cloth, group, softPairs || scene.m_self ? all : all ^ group);
 }
 
-void DropWorld::useBulletsSelfCollision()
+void DropWorld::useBulletsClothWithCloth()
 {
     for (const std::unique_ptr<btSoftBody>& cloth : m_cloths)
-    {
-        cloth->generateClusters(cloth->m_nodes.size() / kNodesPerCluster + 1);
-        cloth->m_cfg.collisions |= btSoftBody::fCollision::VF_SS | btSoftBody::fCollision::CL_SELF;
-    }
+        cloth->m_cfg.collisions |= btSoftBody::fCollision::VF_SS;
 }
 
 double DropWorld::step(double dt)

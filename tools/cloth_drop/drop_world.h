@@ -34,8 +34,9 @@ public:
     void addCloth(const DropScene& scene, bool softPairs) { addSheet(scene, scene.m_cloth.m_mesh, softPairs); }
     // Adds all sheets of the scene, which may meet each other if it says so.
     void addCloths(const DropScene& scene, bool softPairs);
-    // Lets all cloths collide with themselves (by clusters) and with each other (nodes against faces) in Bullet's way.
-    void useBulletsSelfCollision();
+    // Lets all cloths collide with each other in Bullet's way, nodes against faces. Bullet 3.24 has none for a cloth
+    // with itself: beside its flag CL_SELF neither VF_SS nor CL_SS has an effect.
+    void useBulletsClothWithCloth();
 
     TimedWorld& world() { return m_world; }
     // The cloth that was added first, or another one.

@@ -8,6 +8,7 @@
 #include <CLI/CLI.hpp>
 
 #include "tools/cloth_drop/drop_scene.h"
+#include "scenes/cloth_scene.h"
 #include "scenes/shapes.h"
 #include "tools/common/arguments.h"
 #include "tools/common/program.h"
@@ -118,9 +119,10 @@ void addSceneOptions(CLI::App& app, Options& options, std::string& cloth)
 
 void addSceneFileOptions(CLI::App& app, Options& options)
 {
-    app.add_option("--scene", options.m_scene,
-                   "run a scene file (JSON) or a built-in scene instead of the drop on an obstacle")
-        ->type_name("FILE|NAME");
+    offerWords(app.add_option("--scene", options.m_scene,
+                              "run a scene file (JSON) or a built-in scene instead of the drop on an obstacle")
+                   ->type_name("FILE|NAME"),
+               clothSceneNames());
     app.add_flag("--list-scenes", options.m_listScenes, "list the built-in scenes and exit");
     app.add_option("--seed", options.m_seed, "seed of a built-in scene, 0 to 2147483647")
         ->check(CLI::Validator(wholeNumber(0, 2147483647), ""));

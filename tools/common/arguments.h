@@ -33,6 +33,9 @@ std::string outputFile(std::string& text);
 // Makes the option refuse every value that is none of the names, and say which one may be meant.
 void acceptOnly(CLI::Option* option, const std::vector<std::string>& names);
 
+// Makes the shell's completion offer these words for an option whose value may be something else, too, such as a file.
+void offerWords(const CLI::Option* option, const std::vector<std::string>& words);
+
 // Adds --version, --man-page and --completion, and parses. argument_mistakes.h names the mistakes. `conflict` then
 // returns the reason why the options contradict each other, or "". Returns true if the program goes on. Returns false
 // if it must leave with `exitCode`, after printing the help, the version, a page, or one line on standard error.

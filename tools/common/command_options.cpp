@@ -1,5 +1,9 @@
 #include "tools/common/command_options.h"
 
+#include <map>
+
+#include "tools/common/arguments.h"
+
 namespace drape
 {
 namespace
@@ -20,7 +24,19 @@ std::vector<std::string> wordsOf(const std::string& type)
     }
     return words;
 }
+
+// CLI11's options have no room for them.
+std::map<const CLI::Option*, std::vector<std::string>>& offers()
+{
+    static std::map<const CLI::Option*, std::vector<std::string>> all;
+    return all;
+}
 }  // namespace
+
+void offerWords(const CLI::Option* option, const std::vector<std::string>& words)
+{
+    offers()[option] = words;
+}
 
 std::vector<CommandOption> optionsOf(const CLI::App& app)
 {
@@ -37,6 +53,8 @@ std::vector<CommandOption> optionsOf(const CLI::App& app)
         if (takesValue) own.m_type = option->get_type_name();
         own.m_choices = wordsOf(own.m_type);
         if (!own.m_choices.empty()) own.m_type = "WORD";
+        const auto offered = offers().find(option);
+        if (offered != offers().end()) own.m_offers = offered->second;
         if (own.m_names.empty()) own.m_type = option->get_name(true);
         own.m_text = option->get_description();
         if (takesValue) own.m_default = option->get_default_str();

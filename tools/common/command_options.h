@@ -15,6 +15,7 @@ struct CommandOption
     std::string m_text;                  // one line
     std::string m_default;               // empty: none
     std::vector<std::string> m_choices;  // words of which the value is one; empty: any value
+    std::vector<std::string> m_offers;   // some values; see offerWords()
 };
 
 // Returns the options that are not hidden, in the help's order. An option without a name is an argument.

@@ -72,7 +72,7 @@ std::string bashValues(const CLI::App& app)
         else if (takesFolder(option))
             reply = bashReply("-d");
         else if (takesFile(option))
-            reply = bashReply("-f");
+            reply = bashReply(option.m_offers.empty() ? "-f" : "-f -W '" + joined(option.m_offers) + "'");
         cases += "    " + joined(option.m_names, "|") + ") " + reply + "; return ;;\n";
     }
     return cases;
@@ -112,6 +112,7 @@ std::string zshAction(const CommandOption& option)
     const std::string head = ":" + quoted(option.m_type, ":'[]\\") + ":";
     if (!option.m_choices.empty()) return head + "(" + joined(option.m_choices) + ")";
     if (takesFolder(option)) return head + "_files -/";
+    if (!option.m_offers.empty()) return head + "{compadd " + joined(option.m_offers) + "; _files}";
     return head + (takesFile(option) ? "_files" : " ");
 }
 
@@ -149,7 +150,8 @@ std::string fishOptions(const CLI::App& app, const std::string& program, const s
         for (const std::string& name : option.m_names)
             lines += name[1] == '-' ? " -l " + name.substr(2) : " -s " + name.substr(1);
         if (!option.m_type.empty()) lines += takesFile(option) || takesFolder(option) ? " -r" : " -x";
-        if (!option.m_choices.empty()) lines += " -a '" + joined(option.m_choices) + "'";
+        const std::vector<std::string>& words = option.m_choices.empty() ? option.m_offers : option.m_choices;
+        if (!words.empty()) lines += " -a '" + joined(words) + "'";
         lines += " -d '" + quoted(option.m_text, "'\\") + "'\n";
     }
     return lines;

@@ -56,7 +56,8 @@ SceneWorld::SceneWorld(const ClothScene& scene, BulletCollision collision)
         body.setSelfCollision(true);
         if (collision == BulletCollision::NodesAndFaces) body.m_cfg.collisions |= Flags::VF_SS;
         if (collision != BulletCollision::Clusters) continue;
-        body.m_cfg.collisions |= Flags::CL_SS | Flags::CL_SELF;
+        // Not CL_SELF: SVSmask of Bullet 3.24 contains it, and clusters of a body that has it meet nobody.
+        body.m_cfg.collisions |= Flags::CL_SS;
         body.generateClusters(std::max(2, body.m_nodes.size() / kNodesPerCluster));
     }
 }

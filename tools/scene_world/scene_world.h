@@ -16,8 +16,8 @@
 
 namespace drape
 {
-// Bullet's ways of keeping cloth from cloth: nodes against faces of other bodies (VF_SS), or convex clusters of nodes,
-// of the same body, too (CL_SS and CL_SELF).
+// Bullet's ways of keeping cloth from other cloth: nodes against faces (VF_SS), or convex clusters of nodes (CL_SS).
+// Neither keeps a cloth from itself.
 enum class BulletCollision
 {
     NodesAndFaces,

@@ -5,6 +5,7 @@
 #include "bullet_plugin/adapter/mirrors/solid_links.h"
 #include "bullet_plugin/adapter/pairs/eligibility.h"
 #include "bullet_plugin/adapter/solver/body_nodes.h"
+#include "bullet_plugin/core/backends/device_cloth_search.h"
 #include "bullet_plugin/core/solver/topology/cloth_faces.h"
 
 namespace drape
@@ -101,7 +102,7 @@ void ClothMeetings::begin(const Bodies& bodies, const std::function<bool(const b
     if (!anyStepped) m_members.clear();
     m_wasPushed = false;
     if (m_members.empty()) return;
-    m_set.useDevice(m_state.pipeline().searchDevice(), m_state.settings().m_cacheFolder);
+    m_set.useDevice(m_state.pipeline().searchDevice());
     const std::uint64_t layout = layoutHash();
     if (layout != m_layout || m_set.memberCount() != m_members.size())
     {

@@ -188,11 +188,11 @@ Device* BackendSelector::device()
     return m_device ? &m_device->device() : nullptr;
 }
 
-std::shared_ptr<Device> BackendSelector::searchDevice() const
+SearchDevice BackendSelector::searchDevice() const
 {
-    if (!m_device || m_device->device().failed()) return nullptr;
+    if (!m_device || m_device->device().failed()) return {};
     const bool searches = m_device->device().isGpu() || m_settings.m_solverPlace == SolverPlace::Device;
-    return searches ? m_device->sharedDevice() : nullptr;
+    return searches ? m_device->searchDevice() : SearchDevice();
 }
 
 SolveStage* BackendSelector::solveStage(std::size_t nodes)

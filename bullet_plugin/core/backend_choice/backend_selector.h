@@ -17,6 +17,7 @@
 namespace drape
 {
 class DeviceBackend;
+struct SearchDevice;
 class HostBackend;
 class SolveStage;
 class ThreadTeam;
@@ -52,7 +53,7 @@ public:
     Device* device();
     // Returns the open device for searches among cloths: a GPU, or one that the settings have cloth solved on. Null
     // without one, and after its failure.
-    std::shared_ptr<Device> searchDevice() const;
+    SearchDevice searchDevice() const;
 
     // Returns the stage that solves cloths on the device; null if the host should. nodes: see Pipeline::solveStage().
     SolveStage* solveStage(std::size_t nodes);

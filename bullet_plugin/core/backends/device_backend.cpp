@@ -34,9 +34,10 @@ bool solvesOn(const Device& device, const Settings& settings)
 DeviceBackend::DeviceBackend(std::shared_ptr<Device> device, const Settings& settings)
     : m_device(std::move(device)),
       m_settings(settings),
-      m_programs(*m_device, settings.m_cacheFolder, filesTogether(), patchDefines(*m_device))
+      m_programs(
+          std::make_shared<ProgramSet>(*m_device, settings.m_cacheFolder, filesTogether(), patchDefines(*m_device)))
 {
-    const ProgramLoader load = m_programs.loader();
+    const ProgramLoader load = m_programs->loader();
     m_patchCull.create(*m_device, load);
     m_narrowPhase.create(*m_device, load);
     m_ordering.create(*m_device, load);
@@ -108,7 +109,7 @@ void DeviceBackend::forgetScene()
 void DeviceBackend::prepareSelf()
 {
     if (m_self.created() || m_device->failed()) return;
-    m_self.create(*m_device, m_programs.loader());
+    m_self.create(*m_device, m_programs->loader());
     warmUp(0.1f);
 }
 

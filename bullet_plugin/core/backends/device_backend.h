@@ -12,6 +12,7 @@
 #include "bullet_plugin/core/ordering/ordering.h"
 #include "bullet_plugin/core/solver/device/solve_stage.h"
 #include "cloth_store.h"
+#include "device_cloth_search.h"
 #include "drape/settings.h"
 #include "obstacle_store.h"
 #include "step_result.h"
@@ -26,8 +27,8 @@ public:
     ~DeviceBackend();
 
     Device& device() { return *m_device; }
-    const std::shared_ptr<Device>& sharedDevice() const { return m_device; }
-    bool fromCache() const { return m_programs.fromCache(); }
+    SearchDevice searchDevice() const { return {m_device, m_programs}; }
+    bool fromCache() const { return m_programs->fromCache(); }
 
     // Solves cloths; created if the settings may have them solved on this device.
     SolveStage& solveStage() { return m_solve; }
@@ -87,7 +88,7 @@ private:
 
     std::shared_ptr<Device> m_device;
     Settings m_settings;
-    ProgramSet m_programs;
+    std::shared_ptr<ProgramSet> m_programs;
     bool m_limitReached = false;
 
     PatchCullStage m_patchCull;

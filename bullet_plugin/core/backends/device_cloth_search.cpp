@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "bullet_plugin/core/scene/patch_width.h"
 #include "step_limits.h"
 
 namespace drape
@@ -17,20 +16,13 @@ std::size_t withHeadroom(std::size_t count)
 {
     return count + count / 4 + 1024;
 }
-
-// Returns the files that are one program on a CPU.
-std::vector<ProgramSet::Names> filesTogether()
-{
-    return {{"ordering/ordering", "scene/patch_pack", "cloth_cloth/self_cull_simd", "cloth_cloth/self_pack_simd",
-             "cloth_cloth/self_contact", "cloth_cloth/self_contact_simd"}};
-}
 }  // namespace
 
-DeviceClothSearch::DeviceClothSearch(std::shared_ptr<Device> device, const std::string& cacheFolder)
-    : m_device(std::move(device)), m_programs(*m_device, cacheFolder, filesTogether(), patchDefines(*m_device))
+DeviceClothSearch::DeviceClothSearch(const SearchDevice& device)
+    : m_device(device.m_device), m_programs(device.m_programs)
 {
-    m_self.create(*m_device, m_programs.loader());
-    m_ordering.create(*m_device, m_programs.loader());
+    m_self.create(*m_device, m_programs->loader());
+    m_ordering.create(*m_device, m_programs->loader());
     m_counters.reserve(*m_device, 1);
     m_nextCounters.reserve(*m_device, 1);
     m_noObstacles.reserve(*m_device, 1);

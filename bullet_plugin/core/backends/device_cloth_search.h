@@ -10,7 +10,6 @@
 
 #include <cstdint>
 #include <memory>
-#include <string>
 #include <vector>
 
 #include "bullet_plugin/core/cloth_cloth/self_contacts.h"
@@ -23,15 +22,22 @@ namespace drape
 // The continuous test decides about pairs that may meet, and about no others: it finds the same contacts as for all.
 constexpr std::uint32_t kClothSearchMode = DRAPE_AUTOMATIC;
 
+// A device and its programs; null for none.
+struct SearchDevice
+{
+    std::shared_ptr<Device> m_device;
+    std::shared_ptr<ProgramSet> m_programs;
+};
+
 class DeviceClothSearch
 {
 public:
-    // cacheFolder: see Settings. Builds the kernels.
-    DeviceClothSearch(std::shared_ptr<Device> device, const std::string& cacheFolder);
+    // Builds the kernels, unless the programs are there.
+    explicit DeviceClothSearch(const SearchDevice& device);
     // Waits for transfers into memory that is about to be released.
     ~DeviceClothSearch();
 
-    const std::shared_ptr<Device>& device() const { return m_device; }
+    Device* device() const { return m_device.get(); }
 
     // Uploads the next scene anew.
     void forgetScene() { m_cloths.forget(); }
@@ -56,7 +62,7 @@ private:
     SelfContactStage::Input input() const;
 
     std::shared_ptr<Device> m_device;  // the last to go
-    ProgramSet m_programs;
+    std::shared_ptr<ProgramSet> m_programs;
     ClothStore m_cloths;
     SelfContactStage m_self;
     OrderingStage m_ordering;

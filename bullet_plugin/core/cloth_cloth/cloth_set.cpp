@@ -73,12 +73,12 @@ std::pair<std::uint64_t, std::uint32_t> keyOf(const FeatureTest& pair)
 ClothSet::ClothSet() = default;
 ClothSet::~ClothSet() = default;
 
-void ClothSet::useDevice(std::shared_ptr<Device> device, const std::string& cacheFolder)
+void ClothSet::useDevice(const SearchDevice& device)
 {
-    if (device == (m_search ? m_search->device() : nullptr)) return;
+    if (device.m_device.get() == (m_search ? m_search->device() : nullptr)) return;
     if (m_scene) m_scene->m_clothNodes.release();
-    m_search.reset(device ? new DeviceClothSearch(std::move(device), cacheFolder) : nullptr);
-    if (m_scene) m_scene->m_clothNodes.reserve(m_search ? m_search->device().get() : nullptr, 3 * nodeCount());
+    m_search.reset(device.m_device ? new DeviceClothSearch(device) : nullptr);
+    if (m_scene) m_scene->m_clothNodes.reserve(device.m_device.get(), 3 * nodeCount());
 }
 
 void ClothSet::assign(const std::vector<SetMember>& members, float thickness, ThreadTeam& threads)
@@ -108,7 +108,7 @@ void ClothSet::assign(const std::vector<SetMember>& members, float thickness, Th
     mesh.m_selfThickness = thickness;
     m_scene.reset(new Scene);
     m_scene->addCloth(mesh);
-    m_scene->join(m_search ? m_search->device().get() : nullptr);
+    m_scene->join(m_search ? m_search->device() : nullptr);
     if (m_search) m_search->forgetScene();
     m_patches.reset(new HostSelfPatches);
     m_patches->update(m_scene->m_cloths, m_scene->m_clothRest.data());

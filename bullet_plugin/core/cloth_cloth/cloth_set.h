@@ -8,7 +8,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <string>
 #include <vector>
 
 #include "bullet_plugin/core/lists/contact_view.h"
@@ -17,8 +16,8 @@
 
 namespace drape
 {
-class Device;
 class DeviceClothSearch;
+struct SearchDevice;
 // A cloth as the caller has it: arrays that are read during the call only. Lengths in metres.
 struct SetMember
 {
@@ -40,8 +39,8 @@ public:
     ~ClothSet();
 
     // Lets a device make the searches; null: the host. Results are the same. Loses the nodes if the device is another
-    // one. cacheFolder: see Settings.
-    void useDevice(std::shared_ptr<Device> device, const std::string& cacheFolder);
+    // one.
+    void useDevice(const SearchDevice& device);
     // Replaces the members. thickness: m, the greatest of any pair.
     void assign(const std::vector<SetMember>& members, float thickness, ThreadTeam& threads);
 

@@ -336,9 +336,14 @@ SolveStage* Pipeline::solveStage(std::size_t nodes)
     return m_implementation->m_backends.solveStage(nodes);
 }
 
-std::shared_ptr<Device> Pipeline::searchDevice() const
+SearchDevice Pipeline::searchDevice() const
 {
     return m_implementation->m_backends.searchDevice();
+}
+
+void Pipeline::prepareSearch()
+{
+    if (searchDevice().m_device) m_implementation->m_backends.prepareSelf();
 }
 
 bool Pipeline::waitForDevice()

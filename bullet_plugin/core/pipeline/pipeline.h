@@ -26,10 +26,10 @@
 
 namespace drape
 {
-class Device;
 class MeshProbe;
 class SolveStage;
 struct Scene;
+struct SearchDevice;
 struct StepPairs;
 
 // A range of adjacent nodes of a cloth, and the memory to write them to: x y z per node.
@@ -169,7 +169,10 @@ public:
     // number in all cloths.
     SolveStage* solveStage(std::size_t nodes);
     // Returns the device for searches among cloths (DeviceClothSearch); null if the host should make them.
-    std::shared_ptr<Device> searchDevice() const;
+    SearchDevice searchDevice() const;
+    // Builds the kernels of these searches now, if there is such a device. Waits. Do not call between submit() and
+    // finish().
+    void prepareSearch();
     // Waits for all work enqueued so far. Returns false without a device, or if it failed.
     bool waitForDevice();
     // Returns how often the host has waited for the device; 0 without one.
