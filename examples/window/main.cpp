@@ -24,6 +24,7 @@
 #include "tools/cloth_drop/image.h"
 #include "tools/common/arguments.h"
 #include "tools/common/device_option.h"
+#include "tools/scene_file/built_in_scene.h"
 
 namespace drape::window
 {
@@ -294,6 +295,9 @@ int show(const Options& options)
     std::string error;
     if (!deviceSettings(options.m_backend, options.m_device, settings, error) ||
         !couldWrite(options.m_screenshot, error))
+        return fail("drape_window", kExitBadInput, error);
+    SceneFile file;  // mistakes in it are told without a display
+    if (isSceneFile(options.m_scene) && !readScene(options.m_scene, file, error))
         return fail("drape_window", kExitBadInput, error);
     App app(options, settings);
     if (!app.start()) return fail("drape_window", kExitBadInput, app.error());

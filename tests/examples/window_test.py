@@ -130,8 +130,9 @@ class Screenshots(unittest.TestCase):
         self.assertGreater(self.count(drawn, is_contact), 200)
 
     def test_shows_a_scene_file(self):
-        pixels = self.shoot("window_file", "--scene", os.path.join(SCENES, "table.json"), "--frames", "5")
-        self.assertGreater(len(set(pixels)), 300)
+        pixels = self.shoot("window_file", "--scene", os.path.join(SCENES, "table.json"), "--frames", "40")
+        self.assertGreater(len(set(pixels)), 200)
+        self.assertGreater(self.count(pixels, lambda r, g, b: b > r + 40), 0.02 * len(pixels), "no cloth")
 
     def test_shows_bullets_own_collision(self):
         pixels = self.shoot("window_bullet", "--scene", "ball", "--frames", "5", "--detail", "1",
