@@ -297,8 +297,8 @@ int show(const Options& options)
         !couldWrite(options.m_screenshot, error))
         return fail("drape_window", kExitBadInput, error);
     SceneFile file;  // mistakes in it are told without a display
-    if (isSceneFile(options.m_scene) && !readScene(options.m_scene, file, error))
-        return fail("drape_window", kExitBadInput, error);
+    const bool isFile = !isWindowScene(options.m_scene) && isSceneFile(options.m_scene);
+    if (isFile && !readScene(options.m_scene, file, error)) return fail("drape_window", kExitBadInput, error);
     App app(options, settings);
     if (!app.start()) return fail("drape_window", kExitBadInput, app.error());
     app.run();

@@ -1,7 +1,5 @@
 #include "examples/window/options.h"
 
-#include <algorithm>
-
 #include <CLI/CLI.hpp>
 
 #include "examples/window/window_scenes.h"
@@ -64,9 +62,8 @@ bool parse(int argc, const char* const* argv, Options& options, int& exitCode)
     {
         const bool endless = !options.m_screenshot.empty() && options.m_frames == 0;
         if (endless) return std::string("--screenshot needs --frames, which says when it is taken");
-        const std::vector<std::string>& names = windowSceneNames();
-        const bool isKnown = std::find(names.begin(), names.end(), options.m_scene) != names.end();
-        return isKnown || isSceneFile(options.m_scene) ? "" : "--scene: " + unknownWord(options.m_scene, names);
+        const bool isKnown = isWindowScene(options.m_scene) || isSceneFile(options.m_scene);
+        return isKnown ? "" : "--scene: " + unknownWord(options.m_scene, windowSceneNames());
     };
     if (!parseArguments(app, argc, argv, conflict, exitCode)) return false;
     options.m_bullet = collision == "bullet";

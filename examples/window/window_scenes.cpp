@@ -1,5 +1,7 @@
 #include "examples/window/window_scenes.h"
 
+#include <algorithm>
+
 #include "scenes/models.h"
 #include "scenes/shapes.h"
 #include "tools/scene_file/built_in_scene.h"
@@ -45,6 +47,12 @@ const std::vector<std::string>& windowSceneNames()
     return names;
 }
 
+bool isWindowScene(const std::string& name)
+{
+    const std::vector<std::string>& names = windowSceneNames();
+    return std::find(names.begin(), names.end(), name) != names.end();
+}
+
 bool hasFloor(const std::string& name)
 {
     return name == "bunny" || name == "ball";
@@ -56,7 +64,7 @@ bool makeWindowScene(const std::string& name, int detail, const std::string& mod
     scene = ClothScene();
     scene.m_name = name;
     TriangleMesh mesh;
-    if (isSceneFile(name))
+    if (!isWindowScene(name) && isSceneFile(name))
     {
         SceneFile file;
         if (!readScene(name, file, error)) return false;

@@ -9,6 +9,7 @@
 namespace drape::window
 {
 const std::vector<std::string>& windowSceneNames();
+bool isWindowScene(const std::string& name);
 
 // Returns whether the scene's last obstacle is a floor at y = 0.
 bool hasFloor(const std::string& name);

@@ -246,6 +246,22 @@ TEST_F(SceneFiles, WriteOnlyBelowTheWorkingFolder)
     EXPECT_NE(readAll(mesh).find("f 1 2 3"), std::string::npos);
 }
 
+// A scene that the reader would refuse is not written.
+TEST_F(SceneFiles, OnlyWhatCanBeReadIsWritten)
+{
+    const std::string written = write("written.json", "{}");
+    const ToolRun endless = run({"--cloth", "3x3", "--steps", "2000000000", "--write-scene", written});
+    EXPECT_NE(endless.m_exitCode, 0);
+    EXPECT_NE(endless.m_err.find("this scene cannot be a scene file"), std::string::npos) << endless.m_err;
+    EXPECT_EQ(readAll(written), "{}");
+    const std::string mesh = write("far.obj", "v 0 0 0\nv 3e6 0 0\nv 0 0 3e6\nf 1 2 3\n");
+    const ToolRun far = run({"--cloth", "3x3", "--obstacle", mesh, "--write-scene", written});
+    if (far.m_exitCode == 0)
+        EXPECT_EQ(run({"--scene", written, "--write-scene", path("again.json")}).m_exitCode, 0);
+    else
+        EXPECT_EQ(readAll(written), "{}");
+}
+
 // Bullet's own collision runs the same scene in a child, and outputs named in the file are written.
 TEST_F(SceneFiles, RunsAreComparedAndRecorded)
 {

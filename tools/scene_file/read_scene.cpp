@@ -102,24 +102,30 @@ void readDocument(const std::string& text, const std::string& path, SceneFile& f
 }
 }  // namespace
 
-bool readScene(const std::string& path, SceneFile& file, std::string& error)
+bool readSceneText(const std::string& text, const std::string& path, SceneFile& file, std::string& error)
 {
     file = SceneFile();
     file.m_scene.m_thickness = 0.02;
     file.m_scene.m_stepsPerFrame = 1;
     file.m_scene.m_iterations = 5;
-    std::string text;
-    const std::string reason = readWholeFile(path, "scene", text);
     try
     {
-        if (!reason.empty()) throw std::runtime_error(reason);
         readDocument(text, path, file);
     }
     catch (const std::runtime_error& mistake)
     {
-        error = path + ": " + mistake.what();
+        error = mistake.what();
         return false;
     }
     return true;
+}
+
+bool readScene(const std::string& path, SceneFile& file, std::string& error)
+{
+    std::string text;
+    error = readWholeFile(path, "scene", text);
+    if (error.empty() && readSceneText(text, path, file, error)) return true;
+    error = path + ": " + error;
+    return false;
 }
 }  // namespace drape

@@ -28,4 +28,6 @@ struct SceneFile
 
 // Returns false, with "FILE: PATH: what was expected" in `error`, if the file cannot be used.
 bool readScene(const std::string& path, SceneFile& file, std::string& error);
+// Reads the content of such a file, with "PATH: what was expected" in `error`. path: where meshes are relative to.
+bool readSceneText(const std::string& text, const std::string& path, SceneFile& file, std::string& error);
 }  // namespace drape

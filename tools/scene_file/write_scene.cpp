@@ -302,8 +302,18 @@ std::string sceneText(const SceneJson& document)
 
 bool writeScene(const std::string& path, const SceneFile& file, std::string& error)
 {
+    const std::string no = "this scene cannot be a scene file: ";
+    if (double(file.m_frames) * file.m_scene.m_stepsPerFrame > kMostWrittenSteps)
+    {
+        error = no + "it has more than " + std::to_string(kMostWrittenSteps) + " steps";
+        return false;
+    }
     std::error_code code;
     const std::string folder = fs::weakly_canonical(fs::absolute(path, code), code).parent_path().string();
-    return writeFileAtomically(path, sceneText(sceneDocument(file, folder)), error);
+    const std::string text = sceneText(sceneDocument(file, folder));
+    SceneFile back;
+    if (readSceneText(text, path, back, error)) return writeFileAtomically(path, text, error);
+    error = no + error;
+    return false;
 }
 }  // namespace drape

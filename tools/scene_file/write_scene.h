@@ -17,6 +17,9 @@ SceneJson sceneDocument(const SceneFile& file, const std::string& folder);
 // Returns JSON with one line for each short object and array of numbers.
 std::string sceneText(const SceneJson& document);
 
-// Returns false with one line in `error` if the file cannot be written.
+// Maximum number of steps of a scene that is written.
+constexpr int kMostWrittenSteps = 10000000;
+
+// Returns false with one line in `error` if the file cannot be written, or if readScene() would refuse it.
 bool writeScene(const std::string& path, const SceneFile& file, std::string& error);
 }  // namespace drape

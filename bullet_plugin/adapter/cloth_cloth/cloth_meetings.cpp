@@ -101,8 +101,9 @@ void ClothMeetings::begin(const Bodies& bodies, const std::function<bool(const b
     }
     if (!anyStepped) m_members.clear();
     m_wasPushed = false;
+    // Without cloth that meets cloth, the device's memory goes back.
+    m_set.useDevice(m_members.empty() ? SearchDevice() : m_state.pipeline().searchDevice());
     if (m_members.empty()) return;
-    m_set.useDevice(m_state.pipeline().searchDevice());
     const std::uint64_t layout = layoutHash();
     if (layout != m_layout || m_set.memberCount() != m_members.size())
     {

@@ -302,7 +302,6 @@ void Plugin::setSelfCollision(const btSoftBody& body, bool collides, double thic
                   [&]
                   {
                       m_state->m_selfCollision.set(body, btScalar(thickness));
-                      if (m_state->ready()) m_state->pipeline().prepareSearch();
                       return true;
                   });
     else

@@ -203,15 +203,20 @@ void PluginState::prepareAll(const btCollisionObject* const* objects, int count)
 {
     restart();
     m_found.keepList();  // by meshes as they are
+    bool anyMeets = false;
     for (int i = 0; i < count; ++i)
     {
         if (!objects[i]) continue;
         const btCollisionObject& object = *objects[i];
         if (const btSoftBody* body = btSoftBody::upcast(&object))
+        {
             prepareCloth(*body);
+            anyMeets = anyMeets || m_selfCollision.find(*body);
+        }
         else if (object.getCollisionShape())
             prepareShape({nullptr, object.getCollisionShape(), &object, object.getWorldTransform(), -1, -1});
     }
+    if (anyMeets) m_pipeline->prepareSearch();
     m_pipeline->prepare();
 }
 

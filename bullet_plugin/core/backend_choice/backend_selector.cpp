@@ -188,9 +188,10 @@ Device* BackendSelector::device()
     return m_device ? &m_device->device() : nullptr;
 }
 
-SearchDevice BackendSelector::searchDevice() const
+SearchDevice BackendSelector::searchDevice()
 {
-    if (!m_device || m_device->device().failed()) return {};
+    if (m_device && m_device->device().failed()) leaveDevice();
+    if (!m_device || m_deviceFailed) return {};
     const bool searches = m_device->device().isGpu() || m_settings.m_solverPlace == SolverPlace::Device;
     return searches ? m_device->searchDevice() : SearchDevice();
 }

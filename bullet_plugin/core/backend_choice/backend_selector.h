@@ -52,8 +52,8 @@ public:
     // Returns the open device, also while the host runs the steps and after its failure; null without one.
     Device* device();
     // Returns the open device for searches among cloths: a GPU, or one that the settings have cloth solved on. Null
-    // without one, and after its failure.
-    SearchDevice searchDevice() const;
+    // without one, and after its failure, which a search may have met.
+    SearchDevice searchDevice();
 
     // Returns the stage that solves cloths on the device; null if the host should. nodes: see Pipeline::solveStage().
     SolveStage* solveStage(std::size_t nodes);

@@ -83,9 +83,6 @@ StartedDevice startDevice(const Settings& settings, const StopFlag& stop)
     if (started.m_error.failed() || started.m_wanted.m_onHost) return started;
     Stopwatch watch;
     started.m_backend = openBackend(started.m_wanted, settings, started.m_error, stop);
-    // Nobody waits for it, so that kernels come along which the scene may not need.
-    const bool isInBackground = started.m_wanted.m_byCost;
-    if (started.m_backend && isInBackground && started.m_backend->device().isGpu()) started.m_backend->prepareSelf();
     started.m_buildMs = watch.lapMs();
     if (started.m_backend && wantsCrossover && started.m_crossover < 0) findCrossover(started, settings, stop);
     return started;

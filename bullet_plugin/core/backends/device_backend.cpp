@@ -89,14 +89,22 @@ void DeviceBackend::warmUp(float selfThickness)
 {
     forgetScene();
     Scene scene;
+    // At the end, also by an exception: its transfers are over, and the next scene is another one.
+    struct End
+    {
+        ~End()
+        {
+            m_backend.m_device->wait();
+            m_backend.forgetScene();
+        }
+        DeviceBackend& m_backend;
+    } end = {*this};
     StepPairs pairs;
     makeWarmUpScene(scene, pairs, selfThickness);
     StepResult result;
     StepStatistics statistics;
     submit(scene, pairs);
     finish(scene, pairs, result, statistics);
-    m_device->wait();
-    forgetScene();
     m_testsBefore = m_contactsBefore = SIZE_MAX;
 }
 

@@ -37,6 +37,11 @@ DeviceClothSearch::DeviceClothSearch(const SearchDevice& device)
 
 DeviceClothSearch::~DeviceClothSearch()
 {
+    wait();
+}
+
+void DeviceClothSearch::wait()
+{
     m_device->wait();
 }
 
@@ -156,7 +161,7 @@ void DeviceClothSearch::submitPairs(const Scene& scene, const SelfReach& reach, 
 bool DeviceClothSearch::finishPairs(std::vector<FeatureTest>& pairs)
 {
     pairs.clear();
-    if (m_device->failed() || !complete([this] { enqueuePairs(); })) return false;
+    if (!complete([this] { enqueuePairs(); })) return false;
     const std::size_t count = m_countersRead.data()->m_selfTests;
     if (count > m_pairsAsked)
     {

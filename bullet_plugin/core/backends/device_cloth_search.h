@@ -39,6 +39,8 @@ public:
 
     Device* device() const { return m_device.get(); }
 
+    // Waits until no transfer reads the scene.
+    void wait();
     // Uploads the next scene anew.
     void forgetScene() { m_cloths.forget(); }
 

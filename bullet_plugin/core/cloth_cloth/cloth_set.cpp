@@ -71,14 +71,24 @@ std::pair<std::uint64_t, std::uint32_t> keyOf(const FeatureTest& pair)
 }  // namespace
 
 ClothSet::ClothSet() = default;
-ClothSet::~ClothSet() = default;
+
+ClothSet::~ClothSet()
+{
+    if (m_search) m_search->wait();
+}
 
 void ClothSet::useDevice(const SearchDevice& device)
 {
     if (device.m_device.get() == (m_search ? m_search->device() : nullptr)) return;
+    std::unique_ptr<DeviceClothSearch> search(device.m_device ? new DeviceClothSearch(device) : nullptr);
+    if (m_search) m_search->wait();
+    // Without nodes there are no members, should memory run out.
+    std::vector<std::size_t> firstNodes;
+    firstNodes.swap(m_firstNodes);
     if (m_scene) m_scene->m_clothNodes.release();
-    m_search.reset(device.m_device ? new DeviceClothSearch(device) : nullptr);
-    if (m_scene) m_scene->m_clothNodes.reserve(device.m_device.get(), 3 * nodeCount());
+    m_search.swap(search);
+    if (m_scene && !firstNodes.empty()) m_scene->m_clothNodes.reserve(device.m_device.get(), 3 * firstNodes.back());
+    m_firstNodes.swap(firstNodes);
 }
 
 void ClothSet::assign(const std::vector<SetMember>& members, float thickness, ThreadTeam& threads)
@@ -106,6 +116,7 @@ void ClothSet::assign(const std::vector<SetMember>& members, float thickness, Th
     mesh.m_vertexCount = nodeCount();
     mesh.m_looseVertices = true;
     mesh.m_selfThickness = thickness;
+    if (m_search) m_search->wait();  // it may still read the nodes
     m_scene.reset(new Scene);
     m_scene->addCloth(mesh);
     m_scene->join(m_search ? m_search->device() : nullptr);

@@ -336,7 +336,7 @@ SolveStage* Pipeline::solveStage(std::size_t nodes)
     return m_implementation->m_backends.solveStage(nodes);
 }
 
-SearchDevice Pipeline::searchDevice() const
+SearchDevice Pipeline::searchDevice()
 {
     return m_implementation->m_backends.searchDevice();
 }

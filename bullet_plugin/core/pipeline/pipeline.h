@@ -169,7 +169,7 @@ public:
     // number in all cloths.
     SolveStage* solveStage(std::size_t nodes);
     // Returns the device for searches among cloths (DeviceClothSearch); null if the host should make them.
-    SearchDevice searchDevice() const;
+    SearchDevice searchDevice();
     // Builds the kernels of these searches now, if there is such a device. Waits. Do not call between submit() and
     // finish().
     void prepareSearch();

@@ -212,8 +212,9 @@ public:
     // body never does so at the end of a step; StepStatistics::m_clothPairsMeeting counts exceptions. The links of
     // these bodies are solved on the host. Cloth that starts intersecting is pushed apart a little in every step, at a
     // tenth of the thickness at most, and kept apart as it comes apart; clothPairs() lists it. If memory runs out,
-    // nothing changes. The body is remembered by its address until this is switched off. Waits for the kernels of a GPU
-    // that searches among cloths: seconds at the first use of a driver, if the settings name the device.
+    // nothing changes. The body is remembered by its address until this is switched off. A GPU's kernels for it are
+    // built by the next prepare() of such a body, or else in its first step, which then takes seconds at the first use
+    // of a driver.
     //
     // Bullet's flags do the same, with twice the margin: bodies with fCollision::VF_SS collide with each other, a body
     // with CL_SELF or btSoftBody::setSelfCollision(true) with itself. With Solver::Bullet they are left to Bullet.
