@@ -182,12 +182,13 @@ TEST(SelfCollision, TheHighestLayerRestsAThicknessAboveEachLowerOne)
         EXPECT_LT(rmsSpeed(*cloth), 0.01);
 }
 
-TEST(SelfCollision, AStackOfFourSheetsStays)
+// With four sweeps over rows and no repeated pushes it creeps by 0.11 mm/s.
+TEST(SelfCollision, AStackOfFiveSheetsStays)
 {
-    EXPECT_LT(creepOfStack(4, 60), 1e-4);
+    EXPECT_LT(creepOfStack(5, 60), 7e-5);
 }
 
-// Takes a minute.
+// Takes 20 s.
 TEST(SelfCollision, AStackOfTenSheetsStays)
 {
     EXPECT_LT(creepOfStack(10, 300), 1e-4);
