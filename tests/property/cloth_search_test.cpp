@@ -75,6 +75,7 @@ struct TwoSets
         EXPECT_TRUE(m_device.findPairs(kReach, kNoLimit, m_threads, pairs));
         EXPECT_EQ(m_device.smoothPairs(), m_host.smoothPairs());
         EXPECT_EQ(pairs.size(), listed.size());
+        m_pairs += pairs.size();
         EXPECT_TRUE(pairs.size() == listed.size() &&
                     std::memcmp(pairs.data(), listed.data(), pairs.size() * sizeof(FeatureTest)) == 0);
         return contacts.size();
@@ -83,29 +84,42 @@ struct TwoSets
     ThreadTeam m_threads{2};
     std::vector<float> m_positions;
     ClothSet m_host, m_device;
+    std::size_t m_pairs = 0;  // that compare() has compared
 };
 }  // namespace
 
-class ClothSearch : public BackendTest
+class ClothSearch : public DeviceTest
 {
+protected:
+    void SetUp() override
+    {
+        DeviceTest::SetUp();
+        m_shared = std::move(m_device);
+    }
+    void TearDown() override
+    {
+        if (!m_shared) return;
+        EXPECT_FALSE(m_shared->failed()) << m_shared->error().text();
+    }
+    TwoSets makeSets(int count, int nodes) const
+    {
+        return TwoSets(count, nodes, m_shared, GetParam().m_settings.m_cacheFolder);
+    }
+
+    std::shared_ptr<Device> m_shared;
 };
 
 TEST_P(ClothSearch, FewTriangles)
 {
-    const std::shared_ptr<Device> device = openDevice(GetParam());
-    ASSERT_TRUE(device);
-    TwoSets sets(2, 3, device, GetParam().m_settings.m_cacheFolder);
+    TwoSets sets = makeSets(2, 3);
     Random random(70);
     sets.move(0.01f, 0, 0.005f, random);
     EXPECT_GT(sets.compare(), 0u);
-    EXPECT_FALSE(device->failed()) << device->error().text();
 }
 
 TEST_P(ClothSearch, FindsWhatTheHostFinds)
 {
-    const std::shared_ptr<Device> device = openDevice(GetParam());
-    ASSERT_TRUE(device);
-    TwoSets sets(3, 25, device, GetParam().m_settings.m_cacheFolder);
+    TwoSets sets = makeSets(3, 25);
     Random random(71);
     for (const float height : {0.0f, 0.01f, 0.05f})
         for (const float noise : {0.0f, 0.001f, 0.01f})
@@ -114,24 +128,23 @@ TEST_P(ClothSearch, FindsWhatTheHostFinds)
             sets.move(height, 1 + height, noise, random);
             EXPECT_GT(sets.compare(), 8192u);  // more than the lists have room for at first
         }
+    EXPECT_GT(sets.m_pairs, 8192u);
+    EXPECT_GT(m_shared->waits(), 2u * 9u);  // it has searched
     // Other cloths, and then the host.
     sets.assign(1, 20);
     sets.move(0.1f, 0, 0.001f, random);
     sets.compare();
     sets.m_device.useDevice({});
-    const std::size_t waits = device->waits();
+    const std::size_t waits = m_shared->waits();
     sets.move(0.1f, 1, 0.001f, random);
     sets.compare();
-    EXPECT_EQ(device->waits(), waits);
-    EXPECT_FALSE(device->failed()) << device->error().text();
+    EXPECT_EQ(m_shared->waits(), waits);
 }
 
 // A device lists pairs that the host leaves out. Beyond a limit the host counts.
 TEST_P(ClothSearch, TheHostDecidesAboutLimits)
 {
-    const std::shared_ptr<Device> device = openDevice(GetParam());
-    ASSERT_TRUE(device);
-    TwoSets sets(2, 17, device, GetParam().m_settings.m_cacheFolder);
+    TwoSets sets = makeSets(2, 17);
     Random random(72);
     sets.move(0.01f, 0, 0.001f, random);
     for (std::uint64_t limit = 1; limit < kNoLimit; limit *= 4)

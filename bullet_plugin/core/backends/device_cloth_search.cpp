@@ -11,11 +11,6 @@ namespace
 // First guesses; they grow to the scenes' needs.
 constexpr std::size_t kFirstContacts = 1 << 13, kFirstPairs = 1 << 13;
 constexpr cl_uint kMinusOne = 0xbf800000u;  // -1.0f
-
-std::size_t withHeadroom(std::size_t count)
-{
-    return count + count / 4 + 1024;
-}
 }  // namespace
 
 DeviceClothSearch::DeviceClothSearch(const SearchDevice& device)

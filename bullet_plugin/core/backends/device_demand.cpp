@@ -10,11 +10,6 @@ namespace drape
 {
 namespace
 {
-std::size_t withHeadroom(std::size_t count)
-{
-    return count + count / 4 + 1024;
-}
-
 // Number of steps, after one with crowded features, that sort the contacts of such features. Without the sort such a
 // step runs twice.
 constexpr int kStepsToOrder = 64;

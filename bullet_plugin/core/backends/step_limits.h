@@ -11,6 +11,12 @@ namespace drape
 // Most candidates and contacts that a step can have: their numbers stay countable in 32 bits.
 constexpr std::size_t kMostCandidates = std::size_t(1) << 28;
 
+// Returns the room to make for a list that needs so many elements.
+inline std::size_t withHeadroom(std::size_t count)
+{
+    return count + count / 4 + 1024;
+}
+
 struct StepLimits
 {
     explicit StepLimits(const Settings& settings)
