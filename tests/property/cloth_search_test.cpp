@@ -84,7 +84,7 @@ struct TwoSets
     ThreadTeam m_threads{2};
     std::vector<float> m_positions;
     ClothSet m_host, m_device;
-    std::size_t m_pairs = 0;  // that compare() has compared
+    std::size_t m_pairs = 0;  // compared so far
 };
 }  // namespace
 
