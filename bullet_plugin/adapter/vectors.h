@@ -1,7 +1,8 @@
-// Conversions between Bullet's vectors and the core's, in float32.
+// Conversions between Bullet's vectors and the core's.
 #pragma once
 
 #include "LinearMath/btTransform.h"
+#include "bullet_plugin/core/vec3d.h"
 #include "kernels/lib/geometry/vec3.h"
 
 namespace drape
@@ -14,6 +15,17 @@ inline Vec3 vec3Of(const btVector3& v)
 inline btVector3 vectorOf(Vec3 v)
 {
     return btVector3(v.x, v.y, v.z);
+}
+
+// In double precision.
+inline Vec3d wideOf(const btVector3& v)
+{
+    return {double(v.x()), double(v.y()), double(v.z())};
+}
+
+inline btVector3 narrowOf(Vec3d v)
+{
+    return btVector3(btScalar(v.x), btScalar(v.y), btScalar(v.z));
 }
 
 // Writes the position and moves `out` behind it.

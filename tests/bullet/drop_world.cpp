@@ -113,7 +113,8 @@ btRigidBody& DropWorld::addKinematic(btCollisionShape& shape, const btTransform&
     info.m_startWorldTransform = pose;
     auto body = std::make_unique<btRigidBody>(info);
     btRigidBody& added = *body;
-    added.setCollisionFlags(btCollisionObject::CF_KINEMATIC_OBJECT);
+    // Most apps leave the flag of static bodies, which a body without mass has.
+    added.setCollisionFlags(added.getCollisionFlags() | btCollisionObject::CF_KINEMATIC_OBJECT);
     added.setActivationState(DISABLE_DEACTIVATION);
     added.setFriction(1);
     m_world.addRigidBody(&added);

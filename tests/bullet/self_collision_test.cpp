@@ -6,9 +6,8 @@
 
 #include "bullet_plugin/adapter/wiring/plugin_state.h"
 #include "bullet_plugin/core/backends/device_cloth_search.h"
-#include "oracle/self_intersections.h"
 #include "scenes/shapes.h"
-#include "tests/bullet/drop_world.h"
+#include "tests/bullet/layers.h"
 #include "tests/support/backends.h"
 #include "tests/support/environment.h"
 
@@ -16,79 +15,6 @@ namespace drape::test
 {
 namespace
 {
-// Sheets above one another in a world of their own.
-struct Layers
-{
-    Layers(const Settings& settings, int count, float distance, bool collide = true, int mask = -1)
-        : m_plugin(settings), m_world(&m_plugin)
-    {
-        for (int k = 0; k < count; ++k)
-        {
-            ClothSpec spec;
-            spec.m_nodes = 13;
-            spec.m_centre = btVector3(0.01f * btScalar(k), 0.6f + distance * btScalar(k), 0.013f * btScalar(k));
-            spec.m_damping = 0;
-            m_cloths.push_back(&m_world.addCloth(spec, 1, mask));
-            if (collide) m_plugin.setSelfCollision(*m_cloths.back(), true);
-        }
-    }
-
-    std::vector<float> positions() const
-    {
-        std::vector<float> all;
-        for (const btSoftBody* cloth : m_cloths)
-        {
-            const std::vector<float> own = positionsOf(*cloth);
-            all.insert(all.end(), own.begin(), own.end());
-        }
-        return all;
-    }
-    TriangleMesh joined() const
-    {
-        TriangleMesh mesh;
-        mesh.m_positions = positions();
-        std::int32_t first = 0;
-        for (const btSoftBody* cloth : m_cloths)
-        {
-            for (const std::int32_t node : meshOf(*cloth).m_triangles)
-                mesh.m_triangles.push_back(first + node);
-            first += cloth->m_nodes.size();
-        }
-        return mesh;
-    }
-    // Runs steps. Returns the most pairs of triangles that intersect after any of them.
-    std::size_t run(int steps)
-    {
-        SelfIntersections check(joined());
-        std::size_t most = 0;
-        for (int i = 0; i < steps; ++i)
-        {
-            m_world.step();
-            m_status |= m_plugin.statistics().m_status;
-            most = std::max(most, check.find(positions()).size());
-        }
-        return most;
-    }
-    btVector3 momentum() const
-    {
-        btVector3 sum(0, 0, 0);
-        for (const btSoftBody* cloth : m_cloths)
-            for (int i = 0; i < cloth->m_nodes.size(); ++i)
-                sum += cloth->m_nodes[i].m_v / cloth->m_nodes[i].m_im;
-        return sum;
-    }
-    void turnGravityOff()
-    {
-        m_world.world().setGravity(btVector3(0, 0, 0));
-        m_world.world().getWorldInfo().m_gravity.setZero();
-    }
-
-    Plugin m_plugin;
-    DropWorld m_world;
-    std::vector<btSoftBody*> m_cloths;
-    std::uint32_t m_status = 0;
-};
-
 Settings withThreads(unsigned threads)
 {
     Settings settings = hostSettings();

@@ -32,9 +32,9 @@ struct Sheets
         }
         const std::vector<SetMember> members(
             std::size_t(count), {sheet.m_triangles.data(), sheet.triangleCount(), nullptr, 0, sheet.m_positions.data(),
-                                 sheet.vertexCount()});
+                                 sheet.vertexCount(), kThickness});
         ThreadTeam threads(1);
-        m_set.assign(members, kThickness, threads);
+        m_set.assign(members, threads);
         m_held.assign(m_set.nodeCount(), 0);
         m_now = m_joined.m_positions;
     }

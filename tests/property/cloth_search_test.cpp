@@ -39,9 +39,9 @@ struct TwoSets
                 m_positions.push_back(sheet.m_positions[i] + (i % 3 == 1 ? 0.02f * float(k) : 0));
         const std::vector<SetMember> members(
             std::size_t(count), {sheet.m_triangles.data(), sheet.triangleCount(), nullptr, 0, sheet.m_positions.data(),
-                                 sheet.vertexCount()});
+                                 sheet.vertexCount(), kThickness});
         for (ClothSet* set : {&m_host, &m_device})
-            set->assign(members, kThickness, m_threads);
+            set->assign(members, m_threads);
     }
 
     // Moves the nodes over waves of this height, m, with as much noise at both ends of the way.
@@ -65,8 +65,8 @@ struct TwoSets
     std::size_t compare()
     {
         std::vector<Contact> expected, contacts;
-        EXPECT_TRUE(m_host.findContacts(1.5f, kNoLimit, m_threads, expected));
-        EXPECT_TRUE(m_device.findContacts(1.5f, kNoLimit, m_threads, contacts));
+        EXPECT_TRUE(m_host.findContacts(1.5f, kNoLimit, kNoLimit, m_threads, expected));
+        EXPECT_TRUE(m_device.findContacts(1.5f, kNoLimit, kNoLimit, m_threads, contacts));
         EXPECT_EQ(contacts.size(), expected.size());
         EXPECT_TRUE(contacts.size() == expected.size() &&
                     std::memcmp(contacts.data(), expected.data(), contacts.size() * sizeof(Contact)) == 0);
@@ -150,8 +150,12 @@ TEST_P(ClothSearch, TheHostDecidesAboutLimits)
     for (std::uint64_t limit = 1; limit < kNoLimit; limit *= 4)
     {
         std::vector<Contact> expected, contacts;
-        EXPECT_EQ(sets.m_device.findContacts(1.5f, limit, sets.m_threads, contacts),
-                  sets.m_host.findContacts(1.5f, limit, sets.m_threads, expected))
+        EXPECT_EQ(sets.m_device.findContacts(1.5f, limit, kNoLimit, sets.m_threads, contacts),
+                  sets.m_host.findContacts(1.5f, limit, kNoLimit, sets.m_threads, expected))
+            << limit;
+        EXPECT_EQ(contacts.size(), expected.size()) << limit;
+        EXPECT_EQ(sets.m_device.findContacts(1.5f, kNoLimit, limit, sets.m_threads, contacts),
+                  sets.m_host.findContacts(1.5f, kNoLimit, limit, sets.m_threads, expected))
             << limit;
         EXPECT_EQ(contacts.size(), expected.size()) << limit;
         std::vector<FeatureTest> listed, pairs;

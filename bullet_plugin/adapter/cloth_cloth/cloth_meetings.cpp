@@ -2,8 +2,9 @@
 
 #include <algorithm>
 
+#include "bullet_plugin/adapter/cloth_cloth/soft_body_filters.h"
+#include "bullet_plugin/adapter/cloth_cloth/state_hash.h"
 #include "bullet_plugin/adapter/mirrors/solid_links.h"
-#include "bullet_plugin/adapter/pairs/eligibility.h"
 #include "bullet_plugin/adapter/solver/body_nodes.h"
 #include "bullet_plugin/core/backends/device_cloth_search.h"
 #include "bullet_plugin/core/solver/topology/cloth_faces.h"
@@ -14,11 +15,6 @@ namespace
 {
 // Greatest way in a step of a node whose triangles intersect others, as a share of the thickness.
 constexpr float kPushedShare = 0.2f;
-
-std::uint64_t mix(std::uint64_t hash, std::uint64_t value)
-{
-    return (hash ^ value) * 0x100000001b3ull;
-}
 
 btVector3 vectorOf(const double v[3])
 {
@@ -53,51 +49,47 @@ void readFaces(const btSoftBody& body, std::vector<std::int32_t>& triangles, std
 // Returns a number that changes with the members, their thickness, and their faces.
 std::uint64_t ClothMeetings::layoutHash() const
 {
-    std::uint64_t hash = 0xcbf29ce484222325ull;
+    StateHash hash;
     for (const Member& member : m_members)
     {
         const btSoftBody& body = *member.m_body;
-        hash = mix(mix(hash, reinterpret_cast<std::uintptr_t>(&body)), std::uint64_t(member.m_thickness * 1e7));
-        hash = mix(mix(hash, std::uint64_t(body.m_nodes.size())), std::uint64_t(body.m_links.size()));
-        hash = mix(hash, std::uint64_t(member.m_self->m_revision));
+        hash.add(&body).add(std::uint64_t(member.m_thickness * 1e7));
+        hash.add(std::uint64_t(body.m_nodes.size())).add(std::uint64_t(body.m_links.size()));
+        hash.add(std::uint64_t(member.m_self->m_revision));
         for (int f = 0; f < body.m_faces.size(); ++f)
             for (int k = 0; k < 3; ++k)
-                hash = mix(hash, std::uint64_t(body.m_faces[f].m_n[k] - &body.m_nodes[0]));
+                hash.add(std::uint64_t(body.m_faces[f].m_n[k] - &body.m_nodes[0]));
     }
-    return hash;
+    return hash.value();
 }
 
 void ClothMeetings::assignSet()
 {
     std::vector<std::vector<std::int32_t>> triangles(m_members.size()), edges(m_members.size());
     std::vector<SetMember> members;
-    btScalar most = 0;
     for (std::size_t i = 0; i < m_members.size(); ++i)
     {
         const btSoftBody& body = *m_members[i].m_body;
         readFaces(body, triangles[i], edges[i]);
         members.push_back({triangles[i].data(), triangles[i].size() / 3, edges[i].data(), edges[i].size() / 2,
-                           m_members[i].m_self->m_rest.data(), static_cast<std::size_t>(body.m_nodes.size())});
-        most = std::max(most, m_members[i].m_thickness);
+                           m_members[i].m_self->m_rest.data(), static_cast<std::size_t>(body.m_nodes.size()),
+                           float(m_members[i].m_thickness)});
     }
-    m_set.assign(members, float(most), m_state.threads());
+    m_set.assign(members, m_state.threads());
 }
 
 void ClothMeetings::begin(const Bodies& bodies, const std::function<bool(const btSoftBody&)>& isStepped)
 {
     m_members.clear();
     m_state.m_clothPairs.clear();
-    m_lastEnds.swap(m_ends);
-    m_ends.clear();
     bool anyStepped = false;
     for (int i = 0; i < bodies.size(); ++i)
     {
-        const SelfColliding* const self = m_state.m_selfCollision.find(*bodies[i]);
+        SelfColliding* const self = m_state.m_selfCollision.find(*bodies[i]);
         if (!self || bodies[i]->m_nodes.size() == 0) continue;
-        const btScalar thickness = SelfCollision::thicknessOf(*bodies[i], *self);
         const bool moves = isStepped(*bodies[i]);
         anyStepped = anyStepped || moves;
-        if (thickness > 0) m_members.push_back({bodies[i], self, thickness, moves, nullptr, false});
+        m_members.push_back({bodies[i], self, SelfCollision::thicknessOf(*bodies[i], *self), moves, nullptr, false});
     }
     if (!anyStepped) m_members.clear();
     m_wasPushed = false;
@@ -109,9 +101,23 @@ void ClothMeetings::begin(const Bodies& bodies, const std::function<bool(const b
     {
         assignSet();
         m_rows.clear(false);
-        m_lastEnds.clear();
+        m_isClean = false;
     }
     m_layout = layout;
+    noteFilters();
+}
+
+// Notices bodies that may meet others than in the last step.
+void ClothMeetings::noteFilters()
+{
+    for (const Member& member : m_members)
+    {
+        StateHash hash;
+        hash.add(filterHash(*member.m_body));
+        hash.add(std::uint64_t(member.m_self->m_meetsItself) << 1 | std::uint64_t(member.m_self->m_meetsOthers));
+        m_isClean = m_isClean && hash.value() == member.m_self->m_filters;
+        member.m_self->m_filters = hash.value();
+    }
 }
 
 // Returns whether two members collide: as they ask for it, and as Bullet's filters let them.
@@ -119,17 +125,12 @@ bool ClothMeetings::canMeet(std::size_t a, std::size_t b) const
 {
     if (a == b) return m_members[a].m_self->m_meetsItself;
     if (!m_members[a].m_self->m_meetsOthers || !m_members[b].m_self->m_meetsOthers) return false;
-    const btSoftBody &first = *m_members[a].m_body, &second = *m_members[b].m_body;
-    const btBroadphaseProxy *p = first.getBroadphaseHandle(), *q = second.getBroadphaseHandle();
-    const bool pass = p && q && (p->m_collisionFilterGroup & q->m_collisionFilterMask) &&
-                      (q->m_collisionFilterGroup & p->m_collisionFilterMask);
-    return pass && respond(first, second);
+    return filtersLetMeet(*m_members[a].m_body, *m_members[b].m_body);
 }
 
-// Returns the thickness of two members' features, m.
-float ClothMeetings::thicknessOf(std::size_t a, std::size_t b) const
+btVector3 ClothMeetings::startOf(std::size_t node) const
 {
-    return float(0.5f * (m_members[a].m_thickness + m_members[b].m_thickness));
+    return vectorOf(vec3Load(m_set.start(), std::uint32_t(node)));
 }
 
 // Calls write(member, node of Bullet's, node of the set) for all nodes.
@@ -169,42 +170,56 @@ void ClothMeetings::addRow(const Contact& found, std::size_t index)
     contact.m_normal = vec3(view.m_normal[0], view.m_normal[1], view.m_normal[2]);
     contact.m_gap0 = view.m_gap0;
     contact.m_index = std::uint32_t(index);
-    contact.m_thickness = std::min(view.m_thickness, thicknessOf(first, second));
+    contact.m_thickness = std::min(view.m_thickness, m_set.thicknessOf(first, second));
     contact.m_friction = float(std::max(a.m_cfg.kDF, b.m_cfg.kDF));  // Bullet's between soft bodies
     m_rows.add(contact);
     m_members[first].m_hasRows = m_members[second].m_hasRows = true;
 }
 
-// Returns whether the step starts where the guard left the last one, but for held nodes, which the app may have moved.
-bool ClothMeetings::startsAtLastEnds() const
+// Returns whether a member starts the step where the last one left it, but for held nodes, which the app may have
+// moved.
+bool ClothMeetings::startsAtLastEnd(std::size_t member) const
 {
-    if (m_lastEnds.size() != 3 * m_set.nodeCount()) return false;
-    for (std::size_t node = 0; node < m_isHeld.size(); ++node)
-        if (!m_isHeld[node] && !std::equal(m_set.start() + 3 * node, m_set.start() + 3 * node + 3,
-                                           m_lastEnds.begin() + 3 * std::ptrdiff_t(node)))
-            return false;
+    const std::size_t first = m_set.firstNode(member), count = m_set.firstNode(member + 1) - first;
+    const std::vector<float>& ends = m_members[member].m_self->m_ends;
+    if (ends.size() != 3 * count) return false;
+    for (std::size_t i = 0; i < 3 * count; ++i)
+        if (!m_isHeld[first + i / 3] && m_set.start()[3 * first + i] != ends[i]) return false;
     return true;
 }
 
-// Lets held nodes come from where they were after the last step: the app has moved them since.
-void ClothMeetings::startHeldNodes()
+// Lets a member's held nodes come from where they were after the last step: the app has moved them since.
+void ClothMeetings::startHeldNodes(std::size_t member)
 {
-    for (std::size_t i = 0; i < m_lastEnds.size(); ++i)
-        if (m_isHeld[i / 3]) m_set.start()[i] = m_lastEnds[i];
+    const std::size_t first = m_set.firstNode(member);
+    const std::vector<float>& ends = m_members[member].m_self->m_ends;
+    for (std::size_t i = 0; i < ends.size(); ++i)
+        if (m_isHeld[first + i / 3]) m_set.start()[3 * first + i] = ends[i];
 }
 
-// Looks for triangles that intersect where the step starts, unless it starts where the guard left the last one.
+// Looks for triangles that intersect where the step starts, unless it starts where the last one left no such triangles.
 void ClothMeetings::checkStarts()
 {
     m_meeting.clear();
-    if (!startsAtLastEnds()) m_lastEnds.clear();
-    startHeldNodes();
-    if (m_lastEnds.empty()) listMeeting();
-    m_meets.assign(m_set.nodeCount(), 0);
-    for (const std::uint32_t node : m_meeting)
-        m_meets[node] = 1;
+    for (std::size_t i = 0; i < m_members.size(); ++i)
+    {
+        if (startsAtLastEnd(i))
+            startHeldNodes(i);
+        else
+            m_isClean = false;
+    }
+    if (!m_isClean) listMeeting();
+    nameTangles();
     for (std::size_t i = 0; i < m_meeting.size(); i += 6)
         m_state.m_clothPairs.push_back(pairAt(i));
+}
+
+void ClothMeetings::nameTangles()
+{
+    m_tangles.clear(m_meeting.empty() ? 0 : m_set.nodeCount());
+    for (std::size_t i = 0; i < m_meeting.size(); ++i)
+        m_tangles.join(m_meeting[i - i % 6], m_meeting[i]);
+    m_tangles.name();
 }
 
 // Lists the triangles that intersect, of bodies that may meet.
@@ -234,16 +249,18 @@ ClothPairInfo ClothMeetings::pairAt(std::size_t first) const
     return pair;
 }
 
-// Returns whether all nodes belong to triangles that intersect others: the features of these must pass each other to
-// come apart.
-bool ClothMeetings::isMeeting(const std::uint32_t nodes[4]) const
+// Returns whether all nodes belong to one tangle: its features must pass each other to come apart.
+bool ClothMeetings::isTangled(const std::uint32_t nodes[4]) const
 {
-    return !m_meeting.empty() && std::all_of(nodes, nodes + 4, [&](std::uint32_t node) { return m_meets[node] != 0; });
+    if (m_meeting.empty()) return false;
+    const std::uint32_t tangle = m_tangles.groupOf(nodes[0]);
+    return tangle != NodeGroups::kNone &&
+           std::all_of(nodes, nodes + 4, [&](std::uint32_t node) { return m_tangles.groupOf(node) == tangle; });
 }
 
 bool ClothMeetings::isGuarded(const std::uint32_t nodes[4]) const
 {
-    return canMeet(m_set.memberOf(nodes[0]), m_set.memberOf(nodes[3])) && !isMeeting(nodes);
+    return canMeet(m_set.memberOf(nodes[0]), m_set.memberOf(nodes[3])) && !isTangled(nodes);
 }
 
 ClothRows& ClothMeetings::find(const NodesOf& nodesOf)
@@ -266,9 +283,13 @@ ClothRows& ClothMeetings::find(const NodesOf& nodesOf)
     m_isHeld.resize(m_set.nodeCount());
     forNodes(write);
     checkStarts();
-    if (!m_set.findContacts(1 + m_state.settings().m_activation, m_state.settings().m_candidateLimit, m_state.threads(),
-                            m_contacts))
+    const Settings& settings = m_state.settings();
+    if (!m_set.findContacts(1 + settings.m_activation, settings.m_candidateLimit, settings.m_contactLimit,
+                            m_state.threads(), m_contacts))
+    {
         m_contacts.clear();
+        m_state.m_statistics.m_status |= kStepClothsLeftOut;
+    }
     for (std::size_t i = 0; i < m_contacts.size(); ++i)
         addRow(m_contacts[i], i);
     std::vector<Vec3> starts(m_rows.empty() ? 0 : m_set.nodeCount());
@@ -309,7 +330,7 @@ StepContact ClothMeetings::recordOf(const SelfContactView& view) const
     contact.m_objectFeature = contact.m_other.m_feature;
     std::copy_n(view.m_point, 3, contact.m_point);
     std::copy_n(view.m_normal, 3, contact.m_normal);
-    contact.m_thickness = std::min(view.m_thickness, thicknessOf(first, second));
+    contact.m_thickness = std::min(view.m_thickness, m_set.thicknessOf(first, second));
     contact.m_predictedGap = view.m_gap1 - contact.m_thickness;
     contact.m_timeOfImpact = view.m_time;
     return contact;
@@ -337,8 +358,11 @@ bool ClothMeetings::hasRows(const SolverNodes& nodes) const
 // Moves the ends of triangles that started intersecting, once in a step. Their velocities stay.
 void ClothMeetings::pushApart()
 {
+    float least = m_set.thickness();
+    for (std::size_t i = 0; i < m_meeting.size(); i += 6)
+        least = std::min(least, m_set.thicknessOf(m_set.memberOf(m_meeting[i]), m_set.memberOf(m_meeting[i + 3])));
     m_push.compute(m_wasPushed ? std::vector<std::uint32_t>() : m_meeting, m_set.start(), m_isHeld,
-                   double(kPushedShare * m_set.thickness()));
+                   double(kPushedShare * least));
     m_wasPushed = true;
     for (std::size_t i = 0; i < m_push.displacements().size(); ++i)
         m_set.end()[i] += float(m_push.displacements()[i]);
@@ -350,42 +374,66 @@ bool ClothMeetings::isPushed(std::size_t node) const
     return !all.empty() && (all[3 * node] != 0 || all[3 * node + 1] != 0 || all[3 * node + 2] != 0);
 }
 
-const std::vector<btSoftBody*>& ClothMeetings::guard(bool carries)
+const std::vector<btSoftBody*>& ClothMeetings::guard(bool carries,
+                                                     const std::function<bool(const btSoftBody&)>& touchesFixed)
 {
     m_moved.clear();
-    const auto write = [&](const Member& member, const btSoftBody::Node& node, std::size_t index)
-    {
-        float *start = m_set.start() + 3 * index, *end = m_set.end() + 3 * index;
-        writePosition(member.m_isStepped ? node.m_q : node.m_x, start);
-        writePosition(node.m_x, end);
-    };
-    forNodes(write);
-    startHeldNodes();
+    readEnds();
     pushApart();
     const GuardResult result = m_guard.apply(
         m_set, m_isHeld, [this](const std::uint32_t* nodes) { return isGuarded(nodes); },
         m_state.settings().m_candidateLimit, m_state.threads(), carries);
-    m_ends.clear();
-    if (m_meeting.empty() && result.m_startMeeting == 0 && result.m_forced == 0)
-        m_ends.assign(m_set.end(), m_set.end() + 3 * m_set.nodeCount());
+    m_isClean = m_meeting.empty() && result.m_startMeeting == 0 && result.m_forced == 0 && !result.m_tooMany;
     StepStatistics& statistics = m_state.m_statistics;
     statistics.m_nodesShortened += result.m_shortened;
     statistics.m_clothPairsMeeting = m_meeting.size() / 6 + result.m_startMeeting + result.m_forced;
     if (statistics.m_clothPairsMeeting > 0) statistics.m_status |= kStepClothsMeet;
     listFlagged();
-    if (result.m_tooMany) statistics.m_status |= kStepMotionHeldBack;
+    if (result.m_tooMany) reportUnguarded();
+    keepEnds();
+    if (result.m_shortened > 0) slowDown(touchesFixed);
     const auto read = [&](Member& member, btSoftBody::Node& node, std::size_t index)
     {
-        const double share = m_guard.shares()[index];
-        if (!(share < 1) && !isPushed(index) && !m_guard.isCarried(index)) return;
+        if (!(m_guard.shares()[index] < 1) && !isPushed(index) && !m_guard.isCarried(index)) return;
         node.m_x = vectorOf(vec3Load(m_set.end(), std::uint32_t(index)));
-        node.m_v *= btScalar(share);
         if (isPushed(index)) follow(*member.m_body, node, vectorOf(m_push.displacements().data() + 3 * index));
-        if (m_guard.isCarried(index)) follow(*member.m_body, node, node.m_x - node.m_q);
+        if (m_guard.isCarried(index)) follow(*member.m_body, node, node.m_x - startOf(index));
         if (m_moved.empty() || m_moved.back() != member.m_body) m_moved.push_back(member.m_body);
     };
     forNodes(read);
     return m_moved;
+}
+
+// Slows nodes down that did not go their whole way.
+void ClothMeetings::slowDown(const std::function<bool(const btSoftBody&)>& touchesFixed)
+{
+    std::vector<unsigned char> touches;
+    for (const Member& member : m_members)
+        touches.push_back(touchesFixed(*member.m_body));
+    m_impacts.clear(m_set.nodeCount());
+    const auto join = [this](const std::uint32_t* nodes)
+    {
+        for (int k = 0; k < 4; ++k)
+            m_impacts.join(nodes[0], nodes[k]);
+    };
+    m_guard.forStopped(join);
+    m_impacts.name();
+    m_stopped.clear();
+    const auto read = [&](const Member& member, const btSoftBody::Node& node, std::size_t index)
+    {
+        const bool isFixed = touches[std::size_t(&member - m_members.data())];
+        const bool isHeld = m_isHeld[index] || m_guard.isCarried(index) || isFixed;
+        m_stopped.push_back({pointAt(m_set.end(), index), wideOf(node.m_v), isHeld ? 0 : 1 / double(node.m_im),
+                             m_guard.shares()[index], m_impacts.groupOf(index)});
+    };
+    forNodes(read);
+    drape::slowDown(m_stopped);
+    const auto write = [this](const Member&, btSoftBody::Node& node, std::size_t index)
+    {
+        const StoppedNode& stopped = m_stopped[index];
+        if (stopped.m_share < 1 || stopped.m_impact != NodeGroups::kNone) node.m_v = narrowOf(stopped.m_velocity);
+    };
+    forNodes(write);
 }
 
 // Lists the pairs of the last guard() that are not guarded.
@@ -415,15 +463,69 @@ void ClothMeetings::listFlagged()
                        { add(nodes, split, 4, isForced ? PairFlag::Forced : PairFlag::Touches); });
 }
 
-void ClothMeetings::holdStill()
+void ClothMeetings::addNear(BodySet& bodies) const
 {
-    m_ends.clear();
-    const auto hold = [](const Member& member, btSoftBody::Node& node, std::size_t)
+    const auto add = [&](const std::uint32_t* nodes)
     {
-        if (!member.m_isStepped || !(node.m_im > 0)) return;
-        node.m_x = node.m_q;
-        node.m_v.setZero();
+        const btSoftBody* const first = m_members[m_set.memberOf(nodes[0])].m_body;
+        const btSoftBody* const second = m_members[m_set.memberOf(nodes[3])].m_body;
+        if (bodies.count(first) > 0) bodies.insert(second);
+        if (bodies.count(second) > 0) bodies.insert(first);
     };
-    forNodes(hold);
+    m_guard.forPairs(add);
+}
+
+void ClothMeetings::addTo(HeldGroup& group, const BodySet& bodies) const
+{
+    for (std::size_t i = 0; i < m_members.size(); ++i)
+    {
+        const Member& member = m_members[i];
+        if (bodies.count(member.m_body) == 0) continue;
+        const std::size_t first = m_set.firstNode(i);
+        if (member.m_isStepped)
+            group.add(*member.m_body, [this, first](std::size_t node) { return startOf(first + node); });
+        else
+            group.rest();
+    }
+}
+
+void ClothMeetings::endHold()
+{
+    readEnds();
+    keepEnds();
+    reportUnguarded();
+}
+
+void ClothMeetings::readEnds()
+{
+    const auto write = [this](const Member&, const btSoftBody::Node& node, std::size_t index)
+    {
+        float* end = m_set.end() + 3 * index;
+        writePosition(node.m_x, end);
+    };
+    forNodes(write);
+}
+
+// Remembers where the step leaves the nodes.
+void ClothMeetings::keepEnds()
+{
+    for (std::size_t i = 0; i < m_members.size(); ++i)
+        m_members[i].m_self->m_ends.assign(m_set.end() + 3 * m_set.firstNode(i),
+                                           m_set.end() + 3 * m_set.firstNode(i + 1));
+}
+
+// Counts and lists the triangles that intersect where the step ends: cloth stood still, but held nodes moved.
+void ClothMeetings::reportUnguarded()
+{
+    m_isClean = false;
+    const std::vector<float> starts(m_set.start(), m_set.start() + 3 * m_set.nodeCount());
+    std::copy(m_set.end(), m_set.end() + 3 * m_set.nodeCount(), m_set.start());
+    listMeeting();
+    std::copy(starts.begin(), starts.end(), m_set.start());
+    StepStatistics& statistics = m_state.m_statistics;
+    statistics.m_clothPairsMeeting = m_meeting.size() / 6;
+    statistics.m_status |= kStepMotionHeldBack;
+    if (statistics.m_clothPairsMeeting > 0) statistics.m_status |= kStepClothsMeet;
+    listFlagged();
 }
 }  // namespace drape

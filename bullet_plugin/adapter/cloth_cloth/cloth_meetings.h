@@ -10,10 +10,13 @@
 #include <vector>
 
 #include "BulletSoftBody/btSoftBody.h"
+#include "bullet_plugin/adapter/collision/collision_step.h"
 #include "bullet_plugin/adapter/wiring/plugin_state.h"
 #include "bullet_plugin/core/cloth_cloth/cloth_guard.h"
 #include "bullet_plugin/core/cloth_cloth/contour_push.h"
+#include "bullet_plugin/core/cloth_cloth/stopped_nodes.h"
 #include "bullet_plugin/core/solver/host/cloth_rows.h"
+#include "bullet_plugin/core/solver/topology/node_groups.h"
 
 namespace drape
 {
@@ -37,18 +40,23 @@ public:
     bool hasRows(const SolverNodes& nodes) const;
     // Brings triangles that started the step intersecting apart a little, in the step's first call. Then shortens the
     // way of Bullet's nodes from their starts (m_q) to where they are (m_x). Lists the bodies with nodes that were
-    // moved. Adds to the statistics. carries: held nodes carry other cloth along.
-    const std::vector<btSoftBody*>& guard(bool carries);
+    // moved. Adds to the statistics. carries: held nodes carry other cloth along. touchesFixed: whether a body touches
+    // something that takes the momentum of nodes that stop.
+    const std::vector<btSoftBody*>& guard(bool carries, const std::function<bool(const btSoftBody&)>& touchesFixed);
     // Adds the contacts of find() with what the solver's rows gave.
     void record(ContactRecords& records) const;
-    // Puts all free nodes back to their starts, at rest.
-    void holdStill();
+    // Adds the members with features near those of bodies of the set, by the last guard().
+    void addNear(BodySet& bodies) const;
+    // Adds the set's members to a group that is to be held.
+    void addTo(HeldGroup& group, const BodySet& bodies) const;
+    // Takes over where members were put, and reports triangles that intersect there.
+    void endHold();
 
 private:
     struct Member
     {
         btSoftBody* m_body;
-        const SelfColliding* m_self;
+        SelfColliding* m_self;
         btScalar m_thickness;  // m
         bool m_isStepped;
         SolverNodes* m_nodes;
@@ -57,20 +65,26 @@ private:
 
     std::uint64_t layoutHash() const;
     void assignSet();
+    void noteFilters();
     bool canMeet(std::size_t a, std::size_t b) const;
-    float thicknessOf(std::size_t a, std::size_t b) const;
+    btVector3 startOf(std::size_t node) const;
     template <class Write>
     void forNodes(const Write& write);
     void addRow(const Contact& found, std::size_t index);
     ClothPoint pointOf(const SelfContactView& view, int first, int count) const;
     StepContact recordOf(const SelfContactView& view) const;
     void listFlagged();
-    bool startsAtLastEnds() const;
-    void startHeldNodes();
+    bool startsAtLastEnd(std::size_t member) const;
+    void startHeldNodes(std::size_t member);
     void checkStarts();
+    void nameTangles();
+    void readEnds();
+    void keepEnds();
+    void reportUnguarded();
     void listMeeting();
     ClothPairInfo pairAt(std::size_t first) const;
-    bool isMeeting(const std::uint32_t nodes[4]) const;
+    bool isTangled(const std::uint32_t nodes[4]) const;
+    void slowDown(const std::function<bool(const btSoftBody&)>& touchesFixed);
     bool isGuarded(const std::uint32_t nodes[4]) const;
     void pushApart();
     bool isPushed(std::size_t node) const;
@@ -83,12 +97,13 @@ private:
     ClothRows m_rows;
     ClothGuard m_guard;
     ContourPush m_push;
-    bool m_wasPushed = false;             // in this step
-    std::vector<unsigned char> m_isHeld;  // by node of the set: it goes where Bullet or the app puts it
-    // The set's nodes after the last step and after this one; empty if triangles may meet there.
-    std::vector<float> m_lastEnds, m_ends;
+    bool m_wasPushed = false;              // in this step
+    std::vector<unsigned char> m_isHeld;   // by node of the set: it goes where Bullet or the app puts it
+    bool m_isClean = false;                // no triangles met where the last step left the members
     std::vector<std::uint32_t> m_meeting;  // see ClothSet::findMeeting()
-    std::vector<unsigned char> m_meets;    // by node of the set: it belongs to such a triangle
+    NodeGroups m_tangles;                  // triangles that intersect, directly or through others
+    NodeGroups m_impacts;                  // nodes that stopped each other in the last guard()
+    std::vector<StoppedNode> m_stopped;    // see slowDown()
     std::vector<btSoftBody*> m_moved;      // by the last guard()
 };
 }  // namespace drape

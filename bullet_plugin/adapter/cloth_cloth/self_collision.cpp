@@ -1,5 +1,7 @@
 #include "bullet_plugin/adapter/cloth_cloth/self_collision.h"
 
+#include <algorithm>
+
 #include "BulletCollision/BroadphaseCollision/btBroadphaseProxy.h"
 #include "bullet_plugin/adapter/pairs/margins.h"
 #include "bullet_plugin/adapter/vectors.h"
@@ -19,21 +21,22 @@ void readRest(const btSoftBody& body, std::vector<float>& rest)
 
 void SelfCollision::set(const btSoftBody& body, btScalar thickness)
 {
-    SelfColliding self;
+    std::vector<float> rest;
+    readRest(body, rest);
+    SelfColliding& self = m_bodies[&body];
     self.m_thickness = thickness;
-    self.m_isAsked = true;
+    self.m_isAsked = self.m_meetsItself = self.m_meetsOthers = true;
     self.m_revision = ++m_lastRevision;
-    readRest(body, self.m_rest);
-    m_bodies[&body] = std::move(self);
+    self.m_rest.swap(rest);
 }
 
 void SelfCollision::startAnew(const btCollisionObject& object)
 {
     for (auto& entry : m_bodies)
-        if (entry.first == &object) entry.second.m_revision = ++m_lastRevision;
+        if (entry.first == &object) entry.second.m_ends.clear();
 }
 
-const SelfColliding* SelfCollision::find(const btSoftBody& body)
+SelfColliding* SelfCollision::find(const btSoftBody& body)
 {
     auto found = m_bodies.find(&body);
     if (found == m_bodies.end() || !found->second.m_isAsked)
@@ -47,15 +50,15 @@ const SelfColliding* SelfCollision::find(const btSoftBody& body)
             return nullptr;
         }
         if (found == m_bodies.end()) found = m_bodies.emplace(&body, SelfColliding()).first;
-        const int proxy = body.getBroadphaseHandle() ? body.getBroadphaseHandle()->m_uniqueId : 0;
-        if (found->second.m_proxy != proxy)
-        {
-            found->second.m_revision = ++m_lastRevision;
-            found->second.m_rest.clear();
-            found->second.m_proxy = proxy;
-        }
         found->second.m_meetsItself = meetsItself;
         found->second.m_meetsOthers = meetsOthers;
+    }
+    const int proxy = body.getBroadphaseHandle() ? body.getBroadphaseHandle()->m_uniqueId : 0;
+    if (found->second.m_proxy != proxy)
+    {
+        if (!found->second.m_isAsked) found->second.m_rest.clear();
+        found->second.m_ends.clear();
+        found->second.m_proxy = proxy;
     }
     if (found->second.m_rest.size() != 3 * static_cast<std::size_t>(body.m_nodes.size()))
     {
@@ -71,12 +74,12 @@ bool SelfCollision::takes(const btSoftBody& body, const btSoftBody& other)
     const SelfColliding *const first = find(body), *const second = find(other);
     const int both = body.m_cfg.collisions & other.m_cfg.collisions & btSoftBody::fCollision::SVSmask;
     if (both & (btSoftBody::fCollision::CL_SS | btSoftBody::fCollision::VF_DD)) return false;
-    if (!first || !second || !first->m_meetsOthers || !second->m_meetsOthers) return false;
-    return thicknessOf(body, *first) > 0 && thicknessOf(other, *second) > 0;
+    return first && second && first->m_meetsOthers && second->m_meetsOthers;
 }
 
 btScalar SelfCollision::thicknessOf(const btSoftBody& body, const SelfColliding& self)
 {
-    return self.m_thickness > 0 ? self.m_thickness : 2 * marginOf(*body.getCollisionShape());
+    const btScalar asked = self.m_thickness > 0 ? self.m_thickness : 2 * marginOf(*body.getCollisionShape());
+    return std::max(kMinThickness, asked);
 }
 }  // namespace drape

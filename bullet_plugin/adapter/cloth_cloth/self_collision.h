@@ -4,6 +4,7 @@
 // Bodies are compared by address and followed only while a step has them. With Solver::Bullet the flags are Bullet's.
 #pragma once
 
+#include <cstdint>
 #include <unordered_map>
 #include <vector>
 
@@ -13,13 +14,17 @@ namespace drape
 {
 struct SelfColliding
 {
-    btScalar m_thickness = 0;   // m; 0: twice the body's margin
+    btScalar m_thickness = 0;   // m; 0 or less: twice the body's margin
     bool m_isAsked = false;     // by the app's call
     bool m_meetsItself = true;  // it collides with itself
     bool m_meetsOthers = true;  // it collides with other bodies for which this is true
     int m_proxy = 0;            // identifies the body in its world; another one may get its address
-    int m_revision = 0;         // another one, of all bodies, when m_rest changes or the body is put elsewhere
+    int m_revision = 0;         // another one, of all bodies, when m_rest changes
     std::vector<float> m_rest;  // x y z per node, m, where the nodes were when it was switched on
+    // The nodes' positions after the last step, x y z per node, m; empty if it did not have the body, or if that was
+    // put elsewhere.
+    std::vector<float> m_ends;
+    std::uint64_t m_filters = 0;  // a hash of filterHash() and the flags above in that step
 };
 
 class SelfCollision
@@ -34,10 +39,10 @@ public:
     void startAnew(const btCollisionObject& object);
     // Returns null if the body collides neither with itself nor with others. Takes new positions at rest if it got
     // other nodes.
-    const SelfColliding* find(const btSoftBody& body);
+    SelfColliding* find(const btSoftBody& body);
     // Returns whether Drape takes the place of Bullet's own algorithm between two bodies that a solver steps.
     bool takes(const btSoftBody& body, const btSoftBody& other);
-    // Returns the thickness at which the body collides with itself, m.
+    // Returns the thickness at which the body collides with itself, m; at least kMinThickness.
     static btScalar thicknessOf(const btSoftBody& body, const SelfColliding& self);
 
 private:

@@ -12,6 +12,7 @@
 
 #include "bullet_plugin/adapter/collision/body_contacts.h"
 #include "bullet_plugin/adapter/collision/deformed_pairs.h"
+#include "bullet_plugin/adapter/collision/held_group.h"
 #include "bullet_plugin/core/solver/host/impact_cut.h"
 #include "bullet_plugin/adapter/collision/pair_starts.h"
 #include "bullet_plugin/adapter/wiring/plugin_state.h"
@@ -19,6 +20,8 @@
 
 namespace drape
 {
+using BodySet = std::unordered_set<const btSoftBody*>;  // compared, not followed
+
 class CollisionStep
 {
 public:
@@ -52,6 +55,14 @@ public:
     void watch(const btSoftBody& body);
     // Detects along the bodies' real paths, which end at their current positions.
     void detectRealPaths();
+    // Returns whether the body touches an obstacle that does not yield, after the last detection.
+    bool touchesFixed(const BodyContacts& body) const;
+    // Adds the bodies that share dynamic obstacles with bodies of the set.
+    void addSharers(BodySet& bodies) const;
+    // Adds the set's bodies, and the dynamic obstacles beside them, to a group that is to be held.
+    void addTo(HeldGroup& group, const BodySet& bodies);
+    // Detects along the paths of bodies that were held, and reports what passes a surface even so.
+    void checkHeld(const BodySet& bodies);
     // Returns whether a path of the last detection passes a surface.
     bool passesSurface(const BodyContacts& body) const { return anyCuts(impactsOf(body)) || endsBehind(body); }
     // Reports, after finish(), a body without a pair in this step whose nodes are still not finite, as they were when
@@ -116,9 +127,10 @@ private:
     float allowanceOf(MeshId cloth);
     void receive(const ContactList& contacts, Detection detection);
     std::vector<SolverContact> impactsOf(const BodyContacts& body, std::vector<const Contact*>* found = nullptr) const;
-    std::vector<const Pair*> findJammed(std::vector<bool>& isJammed) const;
+    bool isJammed(const BodyContacts& body) const;
+    void endHold(const BodySet& bodies);
     static bool endsBehind(const BodyContacts& body);
-    bool holdStill();
+    bool holdJammed();
     void reportPassed();
     std::vector<SolverContact> dynamicImpactsOf(const BodyContacts& body) const;
     bool cutAtImpactsOf(BodyContacts& body, Cut cut, std::vector<Vec3>* slides);

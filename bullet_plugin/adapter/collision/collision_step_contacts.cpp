@@ -256,67 +256,89 @@ bool CollisionStep::endsBehind(const BodyContacts& body)
     return std::any_of(body.m_contacts.m_features.begin(), body.m_contacts.m_features.end(), isBehind);
 }
 
-// Marks the bodies beside dynamic obstacles that leave cloth no room, and all bodies that share these obstacles with
-// them. Lists the obstacles.
-std::vector<const CollisionStep::Pair*> CollisionStep::findJammed(std::vector<bool>& isJammed) const
+// Returns whether dynamic obstacles leave the body no room.
+bool CollisionStep::isJammed(const BodyContacts& body) const
 {
-    std::vector<const Pair*> pairs;
-    std::unordered_set<const btRigidBody*> objects;
-    for (std::size_t i = 0; i < m_bodies.size(); ++i)
-    {
-        const BodyContacts& body = m_bodies[i];
-        isJammed.push_back(body.m_isOffPath && body.m_hasDynamicPair &&
-                           (passesSurface(body) || leavesBounds(m_state, *body.m_body)));
-    }
-    for (bool grows = true; grows;)
-    {
-        grows = false;
-        for (const Pair& pair : m_pairs)
-        {
-            const btRigidBody* const object = pair.m_note.m_dynamic;
-            const std::size_t body = m_byCloth.at(pair.m_cloth);
-            if (!object || !pair.m_note.m_yields || object->isStaticOrKinematicObject()) continue;
-            if (isJammed[body] == (objects.count(object) > 0)) continue;
-            isJammed[body] = grows = true;
-            objects.insert(object);
-        }
-    }
-    for (const Pair& pair : m_pairs)
-        if (objects.count(pair.m_note.m_dynamic) > 0) pairs.push_back(&pair);
-    return pairs;
+    return body.m_isOffPath && body.m_hasDynamicPair && (passesSurface(body) || leavesBounds(m_state, *body.m_body));
 }
 
-// Puts dynamic obstacles that leave cloth no room back to where they started the step, at rest, and with them the cloth
-// beside them. Returns whether there were any.
-bool CollisionStep::holdStill()
+void CollisionStep::addSharers(BodySet& bodies) const
 {
-    std::vector<bool> isJammed;
-    const std::vector<const Pair*> pairs = findJammed(isJammed);
-    for (std::size_t k = 0; k < m_bodies.size() && !pairs.empty(); ++k)
+    std::unordered_set<const btRigidBody*> objects;
+    for (std::size_t before = 0; before != bodies.size() + objects.size();)
     {
-        BodyContacts& body = m_bodies[k];
-        if (!isJammed[k]) continue;
-        body.m_isOffPath = true;
-        for (int i = 0; i < body.m_body->m_nodes.size(); ++i)
+        before = bodies.size() + objects.size();
+        for (const Pair& pair : m_pairs)
         {
-            btSoftBody::Node& node = body.m_body->m_nodes[i];
-            if (!(node.m_im > 0)) continue;
-            node.m_x = node.m_q;
-            node.m_v.setZero();
-            recordEnd(node, std::size_t(i), body.nodes());
+            const btSoftBody* const body = pair.m_note.m_cloth;
+            if (!dynamicOf(pair.m_obstacle) || (bodies.count(body) == 0 && objects.count(pair.m_note.m_dynamic) == 0))
+                continue;
+            bodies.insert(body);
+            objects.insert(pair.m_note.m_dynamic);
         }
     }
-    for (const Pair* pair : pairs)
+}
+
+bool CollisionStep::touchesFixed(const BodyContacts& body) const
+{
+    if (!body.m_pushes.empty()) return true;
+    for (const FeatureContacts& feature : body.m_contacts.m_features)
+        for (std::uint32_t i = 0; i < feature.m_count; ++i)
+            if (!dynamicOf(m_state.pipeline().view(feature.m_contacts[i]).m_obstacle)) return true;
+    return false;
+}
+
+void CollisionStep::addTo(HeldGroup& group, const BodySet& bodies)
+{
+    for (BodyContacts& body : m_bodies)
     {
-        btRigidBody& object = *pair->m_note.m_dynamic;
-        object.setLinearVelocity(btVector3(0, 0, 0));
-        object.setAngularVelocity(btVector3(0, 0, 0));
-        object.setCenterOfMassTransform(pair->m_note.m_noted);
+        if (bodies.count(body.m_body) == 0) continue;
+        group.add(*body.m_body, [&body](std::size_t node) { return vectorOf(body.nodes().start(node)); });
+        if (touchesFixed(body)) group.rest();
     }
-    if (pairs.empty()) return false;
+    for (const Pair& pair : m_pairs)
+        if (dynamicOf(pair.m_obstacle) && bodies.count(pair.m_note.m_cloth) > 0)
+            group.add(*pair.m_note.m_dynamic, pair.m_note.m_noted);
+}
+
+// Takes over where bodies and dynamic obstacles were put.
+void CollisionStep::endHold(const BodySet& bodies)
+{
+    for (BodyContacts& body : m_bodies)
+    {
+        if (bodies.count(body.m_body) == 0) continue;
+        body.m_isOffPath = true;
+        for (int i = 0; i < body.m_body->m_nodes.size(); ++i)
+            recordEnd(body.m_body->m_nodes[i], std::size_t(i), body.nodes());
+    }
     followDynamic();
     m_state.m_statistics.m_status |= kStepMotionHeldBack;
+}
+
+// Holds the bodies that dynamic obstacles leave no room, with these obstacles. Returns whether there are any.
+bool CollisionStep::holdJammed()
+{
+    BodySet held;
+    for (const BodyContacts& body : m_bodies)
+    {
+        if (held.count(body.m_body) > 0 || !isJammed(body)) continue;
+        BodySet bodies = {body.m_body};
+        addSharers(bodies);
+        HeldGroup group;
+        addTo(group, bodies);
+        group.hold();
+        held.insert(bodies.begin(), bodies.end());
+    }
+    if (held.empty()) return false;
+    endHold(held);
     return true;
+}
+
+void CollisionStep::checkHeld(const BodySet& bodies)
+{
+    endHold(bodies);
+    detectRealPaths();
+    reportPassed();
 }
 
 // Reports bodies whose paths still pass a surface after the last cut. The next step checks them where they are,
@@ -403,13 +425,13 @@ std::vector<BodyContacts*> CollisionStep::checkOffPath()
         detectRealPaths();
         if (detections > kMostDetections)
         {
-            if (holdStill()) detectRealPaths();
+            if (holdJammed()) detectRealPaths();
             reportPassed();
             return {};
         }
         if (!cutOffPath(detections < kMostDetections ? Cut::EachNode : Cut::WholeBody)) break;
     }
-    if (holdStill())
+    if (holdJammed())
     {
         detectRealPaths();
         reportPassed();

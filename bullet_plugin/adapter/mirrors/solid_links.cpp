@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <functional>
-#include <numeric>
-#include <utility>
 
 namespace drape
 {
@@ -13,22 +11,9 @@ namespace
 // that gets another node in place is detected within links / 1024 steps, or twice that.
 constexpr int kLinksPerCheck = 1024;
 
-constexpr int kNoSurface = -1;
-
 const void* arrayOf(const btSoftBody& body)
 {
     return body.m_links.size() > 0 ? &body.m_links[0] : nullptr;
-}
-
-// Returns the root of the node's surface. Each node names a parent; a root names itself.
-int rootOf(std::vector<int>& parents, int node)
-{
-    int root = node;
-    while (parents[std::size_t(root)] != root)
-        root = parents[std::size_t(root)];
-    while (parents[std::size_t(node)] != root)
-        node = std::exchange(parents[std::size_t(node)], root);
-    return root;
 }
 
 // Hashes a link, so that a sum over many links is practically unique.
@@ -64,17 +49,12 @@ bool hasSolidLink(const btSoftBody& body)
 
 void SolidLinks::joinSurfaces(const btSoftBody& body, const std::vector<std::int32_t>& faces)
 {
-    std::vector<int> parents(std::size_t(body.m_nodes.size()));
-    std::iota(parents.begin(), parents.end(), 0);
-    m_surface.assign(parents.size(), kNoSurface);
-    const auto join = [&](const int* nodes, int count)
+    m_surfaces.clear(std::size_t(body.m_nodes.size()));
+    const auto join = [this](const int* nodes, int count)
     {
         if (std::find(nodes, nodes + count, kForeign) != nodes + count) return;
         for (int k = 0; k < count; ++k)
-        {
-            m_surface[std::size_t(nodes[k])] = 0;
-            parents[std::size_t(rootOf(parents, nodes[k]))] = rootOf(parents, nodes[0]);
-        }
+            m_surfaces.join(std::uint32_t(nodes[0]), std::uint32_t(nodes[k]));
     };
     for (std::size_t i = 0; i + 2 < faces.size(); i += 3)
         join(&faces[i], 3);
@@ -85,15 +65,14 @@ void SolidLinks::joinSurfaces(const btSoftBody& body, const std::vector<std::int
             nodes[k] = nodeIndex(body, body.m_tetras[i].m_n[k]);
         join(nodes, 4);
     }
-    for (std::size_t i = 0; i < m_surface.size(); ++i)
-        if (m_surface[i] != kNoSurface) m_surface[i] = rootOf(parents, static_cast<int>(i));
+    m_surfaces.name();
 }
 
 bool SolidLinks::isSolid(Ends ends) const
 {
     if (ends.m_a == kForeign || ends.m_b == kForeign || ends.m_a == ends.m_b) return false;
-    const int surface = m_surface[std::size_t(ends.m_a)];
-    return surface == kNoSurface || surface != m_surface[std::size_t(ends.m_b)];
+    const std::uint32_t surface = m_surfaces.groupOf(std::size_t(ends.m_a));
+    return surface == NodeGroups::kNone || surface != m_surfaces.groupOf(std::size_t(ends.m_b));
 }
 
 // Returns an order-independent hash of the range's solid links and the links with a foreign node.

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "BulletSoftBody/btSoftBody.h"
+#include "bullet_plugin/core/solver/topology/node_groups.h"
 
 namespace drape
 {
@@ -49,9 +50,9 @@ private:
     void remember(const btSoftBody& body);
 
     std::vector<std::int32_t> m_nodes;
-    std::vector<int> m_surface;  // by node: the representative node of its surface; kNoSurface
-    std::uint64_t m_sum = 0;     // sumOf() over all links
-    std::uint64_t m_seen = 0;    // sum over the links up to m_cursor
+    NodeGroups m_surfaces;     // the nodes of connected faces and tetrahedra
+    std::uint64_t m_sum = 0;   // sumOf() over all links
+    std::uint64_t m_seen = 0;  // sum over the links up to m_cursor
     int m_cursor = 0;
     int m_linkCount = 0, m_tetraCount = 0;
     const void* m_linkArray = nullptr;  // compared, never followed

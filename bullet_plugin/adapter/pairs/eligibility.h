@@ -13,6 +13,13 @@ class PluginState;
 const char* reasonForStock(const PluginState& state, const btSoftBody& cloth, const btCollisionObject& obstacle,
                            const btCollisionShape& shape);
 
+// Returns whether the object may move between steps. A body without mass is static, and stays so in most apps that make
+// it kinematic.
+inline bool mayMove(const btCollisionObject& object)
+{
+    return object.isKinematicObject() || !object.isStaticObject();
+}
+
 // Returns whether the object is a link, or the base, of a multibody.
 bool isLink(const btCollisionObject& object);
 

@@ -8,9 +8,6 @@ namespace drape
 {
 namespace
 {
-// Minimum thickness, m: both margins may be zero, but the pipeline needs a positive thickness.
-constexpr btScalar kMinThickness = btScalar(1e-4);
-
 // Maximum and minimum thickness, in mean edge lengths of the cloth.
 constexpr double kMostEdges = 4;
 constexpr double kLeastEdges = 0.005;

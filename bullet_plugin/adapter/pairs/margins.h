@@ -9,6 +9,9 @@
 
 namespace drape
 {
+// Minimum thickness, m: both margins may be zero, but the pipeline needs a positive thickness.
+constexpr btScalar kMinThickness = btScalar(1e-4);
+
 // Returns the margin, m; a negative one counts as 0, since Bullet accepts any number.
 inline btScalar marginOf(const btCollisionShape& shape)
 {

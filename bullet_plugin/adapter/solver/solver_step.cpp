@@ -17,9 +17,9 @@ namespace drape
 namespace
 {
 // Passes of the guard after which obstacles push cloth back to its distance from them, and the maximum of all passes.
-// In between, nodes that guard and obstacles push to and fro only stop earlier on their way. After the last pass all
-// cloths of the step stand still. Held nodes carry cloth in the first passes alone: where an obstacle leaves no room,
-// they go through it, and the pairs are flagged.
+// In between, nodes that guard and obstacles push to and fro only stop earlier on their way. After the last pass cloths
+// for which this had no end stand still. Held nodes carry cloth in the first passes alone: where an obstacle leaves no
+// room, they go through it, and the pairs are flagged.
 constexpr int kClosedGuardRounds = 2, kCarryingGuardRounds = 4, kMostGuardRounds = 8;
 
 // Returns the number of elements that the step's memory is proportional to.
@@ -173,22 +173,47 @@ ClothRows* SoftBodySolver::Work::findMeetings()
 void SoftBodySolver::Work::guardMeetings()
 {
     if (!m_meetings.any()) return;
+    const auto touchesFixed = [this](const btSoftBody& body)
+    {
+        const BodyContacts* const contacts = contactsOf(body);
+        return contacts && m_step->touchesFixed(*contacts);
+    };
     for (int round = 1;; ++round)
     {
-        bool isBesideMesh = false;
-        for (btSoftBody* body : m_meetings.guard(round <= kCarryingGuardRounds))
-        {
-            if (!contactsOf(*body)) continue;
+        std::vector<const btSoftBody*> besideMesh;
+        for (const btSoftBody* body : m_meetings.guard(round <= kCarryingGuardRounds, touchesFixed))
+            if (contactsOf(*body)) besideMesh.push_back(body);
+        if (besideMesh.empty()) return;
+        if (round == kMostGuardRounds) return holdJammed(besideMesh);
+        for (const btSoftBody* body : besideMesh)
             m_step->watch(*body);
-            isBesideMesh = true;
-        }
-        if (!isBesideMesh) return;
-        if (round == kMostGuardRounds) break;
         const std::vector<BodyContacts*> offPath = m_step->checkOffPath();
         if (round <= kClosedGuardRounds) closeOffPath(offPath);
     }
-    m_meetings.holdStill();
-    m_state.m_statistics.m_status |= kStepMotionHeldBack;
+}
+
+// Holds bodies that guard and obstacles leave no room, with the cloth and the dynamic obstacles near them.
+void SoftBodySolver::Work::holdJammed(const std::vector<const btSoftBody*>& jammed)
+{
+    BodySet held;
+    for (const btSoftBody* body : jammed)
+    {
+        if (held.count(body) > 0) continue;
+        BodySet bodies = {body};
+        for (std::size_t before = 0; before != bodies.size();)
+        {
+            before = bodies.size();
+            m_meetings.addNear(bodies);
+            m_step->addSharers(bodies);
+        }
+        HeldGroup group;
+        m_step->addTo(group, bodies);
+        m_meetings.addTo(group, bodies);
+        group.hold();
+        held.insert(bodies.begin(), bodies.end());
+    }
+    m_step->checkHeld(held);
+    m_meetings.endHold();
 }
 
 // Writes the results to the bodies. Reports nodes whose positions are not valid: those that the detection left out,

@@ -96,6 +96,7 @@ struct SoftBodySolver::Work
     void recordSolved();
     std::vector<ContactPush> closingPushes();
     void guardMeetings();
+    void holdJammed(const std::vector<const btSoftBody*>& jammed);
     void checkPaths(CollisionStep& step);
     void letSleep();
 

@@ -121,7 +121,7 @@ void PluginState::note(const void* owner, btSoftBody& cloth, const btCollisionOb
     note.m_obstacle = ObstacleKey{obstacle.getCollisionObject(), obstacle.getCollisionShape(), childOf(obstacle)};
     btCollisionObject& object = *const_cast<btCollisionObject*>(obstacle.getCollisionObject());
     const btTransform& pose = obstacle.getWorldTransform();
-    note.m_isMovable = !object.isStaticObject();
+    note.m_isMovable = mayMove(object);
     note.m_mover = object.isStaticOrKinematicObject() ? nullptr : &object;
     note.m_dynamic = note.m_mover ? btRigidBody::upcast(&object) : nullptr;
     note.m_yields = note.m_dynamic != nullptr;
@@ -251,8 +251,7 @@ void PluginState::prepareShape(const btCollisionObjectWrapper& wrap)
     setPrepared(obstacle, true);
     obstacle.beginStep(isOneSided(shape), triangleFilterOf(shape));
     obstacle.m_continued = false;
-    obstacle.refresh(*m_pipeline, !object.isStaticObject(),
-                     BodyMotion{wrap.getWorldTransform(), wrap.getWorldTransform()});
+    obstacle.refresh(*m_pipeline, mayMove(object), BodyMotion{wrap.getWorldTransform(), wrap.getWorldTransform()});
 }
 
 void PluginState::release(const btCollisionObject* object)

@@ -15,16 +15,18 @@ constexpr int kMostCarries = 16;
 constexpr std::size_t kLeastShared = 1024, kRange = 256;
 
 // Returns the distance that each side keeps, m. Features that are nearer than the thickness at rest keep less.
-double clearanceOf(const ClothSet& set, const FeatureTest& test, const FeaturePaths& paths)
+double clearanceOf(const ClothSet& set, const FeatureTest& test, const std::uint32_t nodes[4],
+                   const FeaturePaths& paths)
 {
-    const double clearance = double(kGuardClearance) * double(set.thickness());
+    const float thickness = set.thicknessOf(set.memberOf(nodes[0]), set.memberOf(nodes[3]));
+    const double clearance = double(kGuardClearance) * double(thickness);
     if (separationOf(paths) > 2 * clearance) return clearance;
-    return double(kGuardClearance) * double(selfThickness(set.thickness(), set.restDistance(test)));
+    return double(kGuardClearance) * double(selfThickness(thickness, set.restDistance(test)));
 }
 }  // namespace
 
 template <class Work>
-void ClothGuard::forPairs(ThreadTeam& threads, const Work& work)
+void ClothGuard::eachPair(ThreadTeam& threads, const Work& work)
 {
     const auto range = [&](std::size_t first, std::size_t last)
     {
@@ -60,10 +62,10 @@ void ClothGuard::takePairs(const ClothSet& set, const std::vector<unsigned char>
             pair.m_paths.m_end[k] = pointAt(set.end(), pair.m_nodes[k]);
             pair.m_paths.m_isHeld[k] = isHeld[pair.m_nodes[k]] || m_isLeading[pair.m_nodes[k]];
         }
-        pair.m_clearance = clearanceOf(set, m_tests[i], pair.m_paths);
+        pair.m_clearance = clearanceOf(set, m_tests[i], pair.m_nodes, pair.m_paths);
         pair.m_rests = pair.m_needsPlane = false;
     };
-    forPairs(threads, take);
+    eachPair(threads, take);
 }
 
 // Gives a resting plane to pairs that no moving one keeps apart on the way to where the nodes now end, or to all pairs.
@@ -82,7 +84,7 @@ bool ClothGuard::checkPairs(const ClothSet& set, bool all, ThreadTeam& threads)
         pair.m_plane = separatingPlane(pair.m_paths, pair.m_clearance);
         pair.m_rests = pair.m_needsPlane = true;
     };
-    forPairs(threads, check);
+    eachPair(threads, check);
     return std::any_of(m_pairs.begin(), m_pairs.end(), [](const Guarded& pair) { return pair.m_needsPlane; });
 }
 

@@ -15,6 +15,7 @@
 // they carry what lies behind them. If more pairs are forced in the end than without carrying, none is carried.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -58,6 +59,22 @@ public:
             if (pair.m_rests && (!pair.m_plane.m_isCertified || isForced(pair)))
                 visit(pair.m_nodes, pair.m_paths.m_split, pair.m_plane.m_isCertified);
     }
+    // Calls visit(nodes) for each pair that the last apply() checked.
+    template <class Visit>
+    void forPairs(const Visit& visit) const
+    {
+        for (const Guarded& pair : m_pairs)
+            visit(pair.m_nodes);
+    }
+    // Calls visit(nodes) for each pair whose features stopped each other.
+    template <class Visit>
+    void forStopped(const Visit& visit) const
+    {
+        const auto isStopped = [this](std::uint32_t node) { return m_shares[node] < 1; };
+        for (const Guarded& pair : m_pairs)
+            if (pair.m_rests && pair.m_plane.m_isCertified && std::any_of(pair.m_nodes, pair.m_nodes + 4, isStopped))
+                visit(pair.m_nodes);
+    }
     // Returns whether held nodes carried a node in the last apply(): its path is another one then.
     bool isCarried(std::size_t node) const { return m_isCarried[node] != 0; }
 
@@ -75,7 +92,7 @@ private:
     GuardResult applyOnce(ClothSet& set, const std::vector<unsigned char>& isHeld, const IsGuarded& isGuarded,
                           std::uint64_t limit, ThreadTeam& threads);
     template <class Work>
-    void forPairs(ThreadTeam& threads, const Work& work);
+    void eachPair(ThreadTeam& threads, const Work& work);
     void dropOthers(const ClothSet& set, const IsGuarded& isGuarded);
     void takePairs(const ClothSet& set, const std::vector<unsigned char>& isHeld, ThreadTeam& threads);
     bool checkPairs(const ClothSet& set, bool all, ThreadTeam& threads);

@@ -91,8 +91,12 @@ void ClothSet::useDevice(const SearchDevice& device)
     m_firstNodes.swap(firstNodes);
 }
 
-void ClothSet::assign(const std::vector<SetMember>& members, float thickness, ThreadTeam& threads)
+void ClothSet::assign(const std::vector<SetMember>& members, ThreadTeam& threads)
 {
+    m_thicknesses.clear();
+    for (const SetMember& member : members)
+        m_thicknesses.push_back(member.m_thickness);
+    const float thickness = members.empty() ? 0 : *std::max_element(m_thicknesses.begin(), m_thicknesses.end());
     m_thickness = thickness;
     m_firstNodes.assign(1, 0);
     std::vector<std::int32_t> triangles, edges;
@@ -230,15 +234,17 @@ void ClothSet::findMeeting(ThreadTeam& threads, std::vector<std::uint32_t>& node
     }
 }
 
-bool ClothSet::findContacts(float reachScale, std::uint64_t limit, ThreadTeam& threads, std::vector<Contact>& contacts)
+bool ClothSet::findContacts(float reachScale, std::uint64_t mostPairs, std::uint64_t most, ThreadTeam& threads,
+                            std::vector<Contact>& contacts)
 {
     const SelfStep step = stepFor(m_thickness * reachScale, reachScale, true);
     m_smoothPairs = 0;
-    if (m_search && m_search->findContacts(*m_scene, m_reach, reachScale, limit, contacts)) return true;
-    m_patches->cull(step, limit, threads);
+    if (m_search && m_search->findContacts(*m_scene, m_reach, reachScale, std::min(mostPairs, most), contacts))
+        return true;
+    m_patches->cull(step, mostPairs, threads);
     m_smoothPairs = m_patches->counts().m_smoothPairs;
     contacts.clear();
-    m_patches->findContacts(step, {limit, UINT64_MAX}, threads, contacts);
-    return m_patches->counts().m_candidates <= limit;
+    m_patches->findContacts(step, {mostPairs, most}, threads, contacts);
+    return m_patches->counts().m_candidates <= mostPairs && m_patches->counts().m_contacts <= most;
 }
 }  // namespace drape

@@ -27,6 +27,7 @@ struct SetMember
     std::size_t m_edgeCount;
     const float* m_rest;  // x y z per node
     std::size_t m_nodeCount;
+    float m_thickness;  // m, of its contacts with itself
 };
 
 // Share of their distance at rest that two points must keep to need no guard.
@@ -41,14 +42,20 @@ public:
     // Lets a device make the searches; null: the host. Results are the same. Loses the nodes if the device is another
     // one.
     void useDevice(const SearchDevice& device);
-    // Replaces the members. thickness: m, the greatest of any pair.
-    void assign(const std::vector<SetMember>& members, float thickness, ThreadTeam& threads);
+    // Replaces the members.
+    void assign(const std::vector<SetMember>& members, ThreadTeam& threads);
 
     std::size_t memberCount() const { return m_firstNodes.empty() ? 0 : m_firstNodes.size() - 1; }
     std::size_t nodeCount() const { return m_firstNodes.empty() ? 0 : m_firstNodes.back(); }
     // Returns the first of a member's nodes in the arrays below; for memberCount() their end.
     std::size_t firstNode(std::size_t member) const { return m_firstNodes[member]; }
     std::size_t memberOf(std::size_t node) const;
+    // Returns the thickness of two members' features, m: the mean of theirs.
+    float thicknessOf(std::size_t first, std::size_t second) const
+    {
+        return 0.5f * (m_thicknesses[first] + m_thicknesses[second]);
+    }
+    // Returns the greatest thickness of any pair, m.
     float thickness() const { return m_thickness; }
     // x y z per node, m, at the step's start and end; the caller writes them.
     float* start() { return m_scene->m_clothNodes.start(); }
@@ -74,9 +81,10 @@ public:
     // vertex need another common point; those with a common edge are left out. O(n log n).
     void findMeeting(ThreadTeam& threads, std::vector<std::uint32_t>& nodes);
 
-    // Finds the contacts along the paths that reach to `reachScale` times the thickness, in canonical order. More than
-    // `limit` pairs give false.
-    bool findContacts(float reachScale, std::uint64_t limit, ThreadTeam& threads, std::vector<Contact>& contacts);
+    // Finds the contacts along the paths that reach to `reachScale` times the greatest thickness, in canonical order.
+    // More than `mostPairs` of features or `most` contacts give false and no contacts.
+    bool findContacts(float reachScale, std::uint64_t mostPairs, std::uint64_t most, ThreadTeam& threads,
+                      std::vector<Contact>& contacts);
     // Returns how many pairs of patches the last search left out. A device finds contacts without.
     std::size_t smoothPairs() const { return m_smoothPairs; }
     // Resolves a contact; nodes are counted over all members.
@@ -92,7 +100,8 @@ private:
     SelfReach m_reach;
     std::vector<float> m_noObstacles;  // see SelfStep
     std::vector<std::size_t> m_firstNodes;
-    float m_thickness = 0;
+    std::vector<float> m_thicknesses;  // m, by member
+    float m_thickness = 0;             // the greatest
     std::size_t m_smoothPairs = 0;
 };
 }  // namespace drape

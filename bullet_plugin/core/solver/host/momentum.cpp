@@ -5,6 +5,7 @@
 
 #include "bullet_plugin/core/solver/rigid_rows.h"
 #include "bullet_plugin/core/vec3d.h"
+#include "mass_sum.h"
 #include "substeps.h"
 
 namespace drape
@@ -14,9 +15,6 @@ namespace
 // Maximum energy of the motion that is given back, as a share of the energy of the motion about the centre of mass.
 // Links take far less in a step. A cloth that has collapsed to a point is not spun up.
 constexpr double kMostEnergy = 0.01;
-
-// Share of the trace that is added to the moments of inertia: those of a rope about its own line are 0.
-constexpr double kSoftening = 1e-6;
 
 // Shares that damping leaves at the step's end.
 struct Kept
@@ -37,11 +35,10 @@ struct Kept
 // Sums over the nodes, about the first node's start.
 struct Sums
 {
-    double m_mass = 0, m_energy = 0;      // energy: twice the kinetic one
-    Vec3d m_moment, m_momentum;           // moments of mass; linear momentum at the step's end
-    Vec3d m_missing, m_missingTurning;    // linear and angular momentum
-    double m_xx = 0, m_yy = 0, m_zz = 0;  // second moments of mass
-    double m_yz = 0, m_zx = 0, m_xy = 0;
+    MassSum m_masses;                   // at the step's end
+    double m_energy = 0;                // twice the kinetic one
+    Vec3d m_momentum;                   // linear momentum at the step's end
+    Vec3d m_missing, m_missingTurning;  // linear and angular momentum
 };
 
 // Adds up the nodes; what they lack is the momentum at the start and what forces gave, less the momentum at the end.
@@ -64,20 +61,13 @@ bool sumUp(const SolverNodes& nodes, const Substeps& substeps, const Kept& kept,
         const Vec3d velocity = wide(nodes.velocity(i));
         const Vec3d start = wide(nodes.start(i)) - origin, moved = wide(node.m_displacement), end = start + moved;
         const Vec3d missing = mass * (perPath * wide(nodes.pathVector(i)) + perForce * force - velocity);
-        const Vec3d momentum = mass * velocity, moment = mass * end;
-        sums.m_mass += mass;
+        const Vec3d momentum = mass * velocity;
+        sums.m_masses.add(mass, end);
         sums.m_energy += dot(momentum, velocity);
-        sums.m_moment = sums.m_moment + moment;
         sums.m_momentum = sums.m_momentum + momentum;
         sums.m_missing = sums.m_missing + missing;
         sums.m_missingTurning =
             sums.m_missingTurning + cross(start, missing) + cross(moved, (mass * inMotion) * force - momentum);
-        sums.m_xx += moment.x * end.x;
-        sums.m_yy += moment.y * end.y;
-        sums.m_zz += moment.z * end.z;
-        sums.m_yz += moment.y * end.z;
-        sums.m_zx += moment.z * end.x;
-        sums.m_xy += moment.x * end.y;
     }
     return true;
 }
@@ -91,18 +81,6 @@ void subtractGiven(const RigidRows& rigid, Vec3d origin, const Kept& kept, Sums&
                             cross(wide(rigid.given().m_reference) - origin, impulse);
 }
 
-// Returns the angular velocity of an angular momentum about the centre of mass.
-Vec3d spinOf(const Sums& sums, Vec3d centre, Vec3d turning)
-{
-    const Vec3d moment = sums.m_moment;
-    const double xx = sums.m_xx - moment.x * centre.x, yy = sums.m_yy - moment.y * centre.y;
-    const double zz = sums.m_zz - moment.z * centre.z, yz = sums.m_yz - moment.y * centre.z;
-    const double zx = sums.m_zx - moment.z * centre.x, xy = sums.m_xy - moment.x * centre.y;
-    const double soft = kSoftening * 2 * (xx + yy + zz);
-    const Vec3d rows[3] = {{yy + zz + soft, -xy, -zx}, {-xy, zz + xx + soft, -yz}, {-zx, -yz, xx + yy + soft}};
-    const Vec3d a = cross(rows[1], rows[2]), b = cross(rows[2], rows[0]), c = cross(rows[0], rows[1]);
-    return 1 / dot(rows[0], a) * (turning.x * a + turning.y * b + turning.z * c);
-}
 }  // namespace
 
 bool keepsMomentum(const SolverCloth& cloth)
@@ -120,10 +98,10 @@ void keepMomentum(const SolverCloth& cloth)
     Sums sums;
     if (!sumUp(nodes, *cloth.m_substeps, kept, sums)) return;
     if (cloth.m_rigid) subtractGiven(*cloth.m_rigid, origin, kept, sums);
-    const Vec3d centre = 1 / sums.m_mass * sums.m_moment, drift = 1 / sums.m_mass * sums.m_missing;
+    const Vec3d centre = sums.m_masses.centre(), drift = 1 / sums.m_masses.mass() * sums.m_missing;
     const Vec3d turning = sums.m_missingTurning - cross(centre, sums.m_missing);
-    const Vec3d spin = spinOf(sums, centre, turning);
-    const double most = kMostEnergy * (sums.m_energy - dot(sums.m_momentum, sums.m_momentum) / sums.m_mass);
+    const Vec3d spin = sums.m_masses.spinOf(turning);
+    const double most = kMostEnergy * (sums.m_energy - dot(sums.m_momentum, sums.m_momentum) / sums.m_masses.mass());
     const double added = dot(spin, turning) + dot(drift, sums.m_missing);
     if (!(added > 0) || !std::isfinite(added) || !(most > 0)) return;
     const double share = std::min(1.0, std::sqrt(most / added));

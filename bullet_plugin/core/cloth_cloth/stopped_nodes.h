@@ -1,0 +1,26 @@
+// The velocities of nodes that stopped each other on their way through a step.
+//
+// Nodes of one impact keep their linear and angular momentum: their common rigid motion stays, and the rest of their
+// velocities shrinks with the way that each could go. Beside a held node, which takes the momentum, velocities shrink
+// whole. Energy never grows. Double precision; the same bits everywhere.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "bullet_plugin/core/solver/topology/node_groups.h"
+#include "bullet_plugin/core/vec3d.h"
+
+namespace drape
+{
+struct StoppedNode
+{
+    Vec3d m_place, m_velocity;  // m, m/s
+    double m_mass;              // kg; 0 for a held node
+    double m_share;             // 0 to 1, how much of its way it went
+    std::uint32_t m_impact;     // a name that its nodes have in common; NodeGroups::kNone for none
+};
+
+// Replaces the velocities.
+void slowDown(std::vector<StoppedNode>& nodes);
+}  // namespace drape

@@ -1,0 +1,330 @@
+// Cloth that is guarded beside filters, limits, other cloth far away, Bullet's solver and rigid bodies.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "BulletSoftBody/btSoftBodyHelpers.h"
+#include "oracle/exact_predicates.h"
+#include "scenes/shapes.h"
+#include "tests/bullet/layers.h"
+
+namespace drape::test
+{
+namespace
+{
+// Two sheets; the upper one is tilted through the pinned lower one.
+struct Crossing : Layers
+{
+    Crossing() : Layers(hostSettings(), 2, 0.0f)
+    {
+        pin(*m_cloths[0]);
+        turnGravityOff();
+        for (int i = 0; i < m_cloths[1]->m_nodes.size(); ++i)
+        {
+            btSoftBody::Node& node = m_cloths[1]->m_nodes[i];
+            node.m_x.setY(node.m_x.y() + btScalar(0.4) * node.m_x.x());
+            node.m_q = node.m_x;
+        }
+    }
+};
+
+using Filter = std::function<void(btSoftBody&, btSoftBody&, bool)>;  // lets two bodies meet, or not
+
+struct NamedFilter
+{
+    const char* m_name;
+    Filter m_set;
+};
+
+void setResponse(btSoftBody& body, bool responds)
+{
+    const int flags = body.getCollisionFlags() & ~int(btCollisionObject::CF_NO_CONTACT_RESPONSE);
+    body.setCollisionFlags(responds ? flags : flags | int(btCollisionObject::CF_NO_CONTACT_RESPONSE));
+}
+
+void setDisabled(btSoftBody& body, btSoftBody& other, bool meets)
+{
+    if (meets)
+        body.m_collisionDisabledObjects.remove(&other);
+    else
+        body.m_collisionDisabledObjects.push_back(&other);
+}
+
+std::vector<NamedFilter> filters()
+{
+    return {
+        {"mask of the first", [](btSoftBody& a, btSoftBody&, bool meets)
+         { a.getBroadphaseHandle()->m_collisionFilterMask = meets ? -1 : 2; }},
+        {"response of the first", [](btSoftBody& a, btSoftBody&, bool meets) { setResponse(a, meets); }},
+        {"response of the second", [](btSoftBody&, btSoftBody& b, bool meets) { setResponse(b, meets); }},
+        {"list of the first", [](btSoftBody& a, btSoftBody& b, bool meets) { setDisabled(a, b, meets); }},
+        {"list of the second", [](btSoftBody& a, btSoftBody& b, bool meets) { setDisabled(b, a, meets); }},
+        {"the first ignores", [](btSoftBody& a, btSoftBody& b, bool meets) { a.setIgnoreCollisionCheck(&b, !meets); }},
+        {"the second ignores",
+         [](btSoftBody& a, btSoftBody& b, bool meets) { b.setIgnoreCollisionCheck(&a, !meets); }}};
+}
+
+// Lets no pair of the same group meet.
+struct GroupFilter : btOverlapFilterCallback
+{
+    bool needBroadphaseCollision(btBroadphaseProxy* a, btBroadphaseProxy* b) const override
+    {
+        return a->m_collisionFilterGroup != b->m_collisionFilterGroup;
+    }
+};
+
+// Counts the pairs of triangles of a cloth and a box that intersect.
+std::size_t meetingBox(const btSoftBody& cloth, const btTransform& pose, const btVector3& half)
+{
+    const TriangleMesh box = placed(makeBox(2, 2, 2), pose, half);
+    std::size_t count = 0;
+    for (int f = 0; f < cloth.m_faces.size(); ++f)
+    {
+        Vector3 own[3];
+        for (int k = 0; k < 3; ++k)
+        {
+            const btVector3& x = cloth.m_faces[f].m_n[k]->m_x;
+            own[k] = {float(x.x()), float(x.y()), float(x.z())};
+        }
+        for (std::size_t t = 0; t < box.triangleCount(); ++t)
+        {
+            Vector3 other[3];
+            for (std::size_t k = 0; k < 3; ++k)
+            {
+                const float* const x = box.m_positions.data() + 3 * box.m_triangles[3 * t + k];
+                other[k] = {x[0], x[1], x[2]};
+            }
+            count += trianglesIntersect(own, other);
+        }
+    }
+    return count;
+}
+}  // namespace
+
+TEST(ClothMeetings, FiltersWorkFromBothSides)
+{
+    for (const NamedFilter& filter : filters())
+    {
+        Layers layers(hostSettings(), 2, 0.03f);
+        pin(*layers.m_cloths[0]);
+        filter.m_set(*layers.m_cloths[0], *layers.m_cloths[1], false);
+        layers.run(40);
+        EXPECT_LT(lowestOf(*layers.m_cloths[1]), 0.5f) << filter.m_name;
+        EXPECT_EQ(layers.m_status, std::uint32_t(kStepGood)) << filter.m_name;
+    }
+}
+
+TEST(ClothMeetings, TheWorldsOwnFilterIsAsked)
+{
+    Layers layers(hostSettings(), 2, 0.03f);
+    GroupFilter filter;
+    layers.m_world.world().getPairCache()->setOverlapFilterCallback(&filter);
+    pin(*layers.m_cloths[0]);
+    layers.run(40);
+    EXPECT_LT(lowestOf(*layers.m_cloths[1]), 0.5f);
+    layers.m_world.world().getPairCache()->setOverlapFilterCallback(nullptr);
+}
+
+TEST(ClothMeetings, ClothsThatMayMeetFromNowOnAreChecked)
+{
+    for (const NamedFilter& filter : filters())
+    {
+        Crossing cloths;
+        filter.m_set(*cloths.m_cloths[0], *cloths.m_cloths[1], false);
+        cloths.run(3);
+        const std::size_t crossing = cloths.meeting();
+        EXPECT_GT(crossing, 0u);
+        EXPECT_EQ(cloths.m_plugin.statistics().m_clothPairsMeeting, 0u) << filter.m_name;
+        filter.m_set(*cloths.m_cloths[0], *cloths.m_cloths[1], true);
+        cloths.m_world.step();
+        EXPECT_EQ(cloths.m_plugin.clothPairs().size(), crossing) << filter.m_name;
+        EXPECT_NE(cloths.m_plugin.statistics().m_status & kStepClothsMeet, 0u) << filter.m_name;
+    }
+}
+
+// Bullet's passes against drift put the nodes' ends where their starts were.
+TEST(ClothMeetings, BodiesThatDriftAreKeptApart)
+{
+    Layers layers(hostSettings(), 2, 0.3f);
+    pin(*layers.m_cloths[0]);
+    layers.m_cloths[1]->m_cfg.diterations = 1;
+    layers.m_cloths[1]->setVelocity(btVector3(0, -5, 0));
+    ASSERT_FALSE(layers.m_plugin.whyBulletSolves(*layers.m_cloths[1]).empty());
+    EXPECT_EQ(layers.run(40), 0u);
+    EXPECT_GT(lowestOf(*layers.m_cloths[1]), 0.5f);
+}
+
+TEST(ClothMeetings, ThickClothFarAwayKeepsNobodyInTheAir)
+{
+    Layers layers(hostSettings(), 2, 0.1f);
+    pin(*layers.m_cloths[0]);
+    ClothSpec spec;
+    spec.m_nodes = 4;
+    spec.m_centre = btVector3(20, 0, 0);
+    btSoftBody& thick = layers.m_world.addCloth(spec);
+    thick.getCollisionShape()->setMargin(0.25f);  // Bullet's default
+    layers.m_plugin.setSelfCollision(thick, true);
+    EXPECT_EQ(layers.run(30), 0u);
+    EXPECT_NEAR(lowestOf(*layers.m_cloths[1]), lowestOf(*layers.m_cloths[0]) + kThickness, 0.1f * kThickness);
+}
+
+TEST(ClothMeetings, MarginsOfNothingKeepClothsApart)
+{
+    Layers layers(hostSettings(), 2, 0.1f);
+    pin(*layers.m_cloths[0]);
+    layers.m_cloths[0]->getCollisionShape()->setMargin(0);
+    layers.m_cloths[1]->getCollisionShape()->setMargin(-1);
+    EXPECT_EQ(layers.run(60), 0u);
+    EXPECT_GT(lowestOf(*layers.m_cloths[1]), lowestOf(*layers.m_cloths[0]));
+}
+
+// A pinned sheet goes through a free one in one step, while something changes that has to do with neither.
+TEST(ClothMeetings, HeldNodesCarryClothWhateverElseChanges)
+{
+    const std::vector<std::pair<const char*, std::function<void(Layers&, btSoftBody&)>>> changes = {
+        {"nothing", [](Layers&, btSoftBody&) {}},
+        {"cloth is added",
+         [](Layers& layers, btSoftBody&)
+         {
+             ClothSpec spec;
+             spec.m_centre = btVector3(30, 0, 0);
+             layers.m_plugin.setSelfCollision(layers.m_world.addCloth(spec), true);
+         }},
+        {"cloth is removed", [](Layers& layers, btSoftBody& other) { layers.m_world.remove(other); }},
+        {"another thickness",
+         [](Layers& layers, btSoftBody& other) { layers.m_plugin.setSelfCollision(other, true, 0.03); }},
+        {"a node that is moved", [](Layers&, btSoftBody& other) { other.m_nodes[0].m_x += btVector3(0, 0.001f, 0); }},
+        {"an invalid node",
+         [](Layers&, btSoftBody& other) { other.m_nodes[0].m_x.setX(std::numeric_limits<btScalar>::quiet_NaN()); }}};
+    for (const auto& change : changes)
+    {
+        Layers layers(hostSettings(), 2, 0.03f);
+        layers.turnGravityOff();
+        ClothSpec spec;
+        spec.m_centre = btVector3(20, 0, 0);
+        btSoftBody& other = layers.m_world.addCloth(spec);
+        layers.m_plugin.setSelfCollision(other, true);
+        pin(*layers.m_cloths[0]);
+        layers.m_world.step(2);
+        move(*layers.m_cloths[0], btVector3(0, 0.2f, 0));
+        change.second(layers, other);
+        layers.m_world.step();
+        EXPECT_EQ(layers.meeting(), 0u) << change.first;
+        EXPECT_GT(lowestOf(*layers.m_cloths[1]), layers.m_cloths[0]->m_nodes[0].m_x.y()) << change.first;
+        EXPECT_EQ(layers.m_plugin.statistics().m_clothPairsMeeting, 0u) << change.first;
+    }
+}
+
+// Each of two pairs of sheets starts tangled. The upper pair flies into the lower one.
+TEST(ClothMeetings, TanglesAreKeptFromEachOther)
+{
+    const btVector3 sheets[4][3] = {{{0, 0, 0}, {0.5f, 0, 0}, {0, 0, 0.5f}},
+                                    {{0.03f, -0.3f, 0.01f}, {0.2f, 0.02f, 0}, {0, 0.35f, 0.03f}},
+                                    {{0.01f, 0.5f, 0.02f}, {0.1f, 0.03f, 0}, {0, 0.02f, 0.1f}},
+                                    {{0.02f, 0.52f, 0.03f}, {0.05f, 0, 0.01f}, {0, 0.05f, 0}}};
+    Layers layers(hostSettings(), 0, 0);
+    layers.turnGravityOff();
+    std::vector<std::unique_ptr<btSoftBody>> bodies;
+    for (int k = 0; k < 4; ++k)
+    {
+        const btVector3 &centre = sheets[k][0], &u = sheets[k][1], &v = sheets[k][2];
+        bodies.emplace_back(btSoftBodyHelpers::CreatePatch(layers.m_world.world().getWorldInfo(), centre - u - v,
+                                                           centre + u - v, centre - u + v, centre + u + v, 2, 2, 0,
+                                                           true));
+        btSoftBody& cloth = *bodies.back();
+        cloth.getCollisionShape()->setMargin(0.005f);
+        cloth.setTotalMass(0.05f);
+        cloth.m_cfg.piterations = 5;
+        layers.m_world.world().addSoftBody(&cloth);
+        layers.m_plugin.setSelfCollision(cloth, true);
+        layers.m_cloths.push_back(&cloth);
+        if (k < 2)
+            pin(cloth);
+        else
+            cloth.setVelocity(btVector3(0, -10, 0));
+    }
+    SelfIntersections check(layers.joined());
+    EXPECT_GE(layers.meeting(), 2u);
+    for (int step = 0; step < 20; ++step)
+    {
+        layers.m_world.step();
+        for (const auto& pair : check.find(layers.positions()))
+            EXPECT_EQ(pair.first < 4, pair.second < 4) << step;
+    }
+    for (const std::unique_ptr<btSoftBody>& body : bodies)
+        layers.m_world.world().removeSoftBody(body.get());
+}
+
+TEST(ClothMeetings, WhatGoesBeyondTheLimitsIsReported)
+{
+    for (const bool contacts : {false, true})
+    {
+        Settings settings = hostSettings();
+        (contacts ? settings.m_contactLimit : settings.m_candidateLimit) = 50;
+        Layers layers(settings, 2, 0.03f);
+        layers.turnGravityOff();
+        pin(*layers.m_cloths[1]);
+        bool leftOut = false;
+        for (int step = 0; step < 30; ++step)
+        {
+            if (step >= 10) move(*layers.m_cloths[1], btVector3(0, -0.01f, 0));
+            layers.m_world.step();
+            const StepStatistics& statistics = layers.m_plugin.statistics();
+            leftOut = leftOut || (statistics.m_status & kStepClothsLeftOut) != 0;
+            EXPECT_TRUE(statistics.m_selfContacts == 0 || statistics.m_selfContacts <= 50u);
+            EXPECT_EQ(layers.meeting() > 0, statistics.m_clothPairsMeeting > 0) << contacts << " " << step;
+        }
+        EXPECT_TRUE(leftOut);
+    }
+}
+
+// The guard stops the upper sheet, and the box has to stop with it.
+TEST(ClothMeetings, ABodyOnTwoSheetsPassesNeither)
+{
+    for (const btScalar mass : {btScalar(0.5), btScalar(20)})
+    {
+        btBoxShape shape(btVector3(0.12f, 0.08f, 0.1f));
+        Layers layers(hostSettings(), 2, 0.03f);
+        for (const int corner : {0, 12, 156, 168})
+            layers.m_cloths[0]->setMass(corner, 0);
+        btTransform pose = btTransform::getIdentity();
+        pose.setOrigin(btVector3(0, 0.75f, 0));
+        btRigidBody& box = layers.m_world.addDynamic(shape, mass, pose);
+        for (int step = 0; step < 60; ++step)
+        {
+            EXPECT_EQ(layers.run(1), 0u) << step;
+            for (const btSoftBody* cloth : layers.m_cloths)
+                ASSERT_EQ(meetingBox(*cloth, box.getWorldTransform(), btVector3(0.12f, 0.08f, 0.1f)), 0u) << step;
+        }
+        EXPECT_GT(box.getWorldTransform().getOrigin().y(), 0.1f) << mass;
+    }
+}
+
+TEST(ClothMeetings, ImpactsKeepTheMomentum)
+{
+    for (const btScalar speed : {btScalar(2), btScalar(10)})
+    {
+        Layers sheets(hostSettings(), 2, 0.1f);
+        sheets.turnGravityOff();
+        sheets.m_cloths[1]->setVelocity(btVector3(0, -speed, 0));
+        const btVector3 before = sheets.momentum();
+        EXPECT_EQ(sheets.run(60), 0u);
+        EXPECT_LT((sheets.momentum() - before).length(), 1e-5f * before.length()) << speed;
+
+        btBoxShape shape(btVector3(0.1f, 0.1f, 0.1f));
+        Layers layers(hostSettings(), 2, 0.03f);
+        layers.turnGravityOff();
+        btTransform pose(btQuaternion(btVector3(1, 0.5f, 0.2f).normalized(), 0.3f), btVector3(0.03f, 0.9f, 0.02f));
+        btRigidBody& box = layers.m_world.addDynamic(shape, 0.5f, pose);
+        box.setDamping(0, 0);
+        box.setLinearVelocity(btVector3(0, -speed, 0));
+        const btVector3 whole = box.getLinearVelocity() / box.getInvMass();
+        EXPECT_EQ(layers.run(60), 0u);
+        const btVector3 after = layers.momentum() + box.getLinearVelocity() / box.getInvMass();
+        EXPECT_LT((after - whole).length(), 1e-5f * whole.length()) << speed;
+        EXPECT_LT(box.getLinearVelocity().length(), 0.9f * speed);
+    }
+}
+}  // namespace drape::test
