@@ -361,6 +361,26 @@ TEST(StartsOnHost, DiagnoseNamesWhatIsLeftToBulletAndWhy)
     EXPECT_TRUE(contains(plugin.diagnose(world.world()), "not a triangle mesh"));
 }
 // The cloth stays near another mesh meanwhile, so that its own record lives on.
+// No contact can tell on which side of a surface cloth belongs that lies on it.
+TEST(StartsOnHost, ClothThatStartsOnASurfaceIsTold)
+{
+    for (const float height : {0.5f, 0.51f})
+    {
+        MeshShape box(makeBox(4, 1, 4));
+        Plugin plugin(hostSettings());
+        DropWorld world(&plugin);
+        world.addObstacle(box.shape());
+        btSoftBody& cloth = world.addCloth(clothAt(height));
+        cloth.setVelocity(btVector3(0, -1, 0));
+        world.step();
+        EXPECT_EQ((plugin.statistics().m_status & kStepSurfacePassed) != 0, height < 0.505f) << height;
+        // The next step checks where it is, and brings it out.
+        world.step(120);
+        EXPECT_GT(lowestOf(cloth), 0.5f) << height;
+        EXPECT_EQ(plugin.statistics().m_status, std::uint32_t(kStepGood)) << height;
+    }
+}
+
 TEST(Starts, AnObstacleThatComesBackIsCheckedAgain)
 {
     for (const int absent : {2, 6, 40})

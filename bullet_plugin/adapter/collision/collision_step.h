@@ -132,6 +132,8 @@ private:
     static bool endsBehind(const BodyContacts& body);
     bool holdJammed();
     void reportPassed();
+    bool startsOnSurface(const BodyContacts& body) const;
+    void tellPassed(std::size_t body);
     std::vector<SolverContact> dynamicImpactsOf(const BodyContacts& body) const;
     bool cutAtImpactsOf(BodyContacts& body, Cut cut, std::vector<Vec3>* slides);
     bool cutBeforeDynamic(BodyContacts& body);

@@ -15,6 +15,16 @@ namespace
 {
 // Factor on the tests that ordinary motion needs, for cloth that came apart or is beside an obstacle that jumps.
 constexpr float kMostAllowance = 8;
+
+// Distance from a surface at which a feature is on it, as a share of the thickness.
+constexpr float kOnSurface = 1.0f / 256;
+
+// Returns whether one of up to three nodes is held; -1: none.
+bool anyHeld(const SolverNodes& nodes, const int feature[3])
+{
+    return std::any_of(feature, feature + 3,
+                       [&](int node) { return node >= 0 && !(nodes.inverseMass(std::size_t(node)) > 0); });
+}
 }  // namespace
 
 // Takes the contacts of the current detection. If that holds bodies together, detects again and takes the new
@@ -350,16 +360,27 @@ void CollisionStep::reportPassed()
         if (!m_bodies[i].m_isOffPath) continue;
         std::vector<SolverContact> impacts = impactsOf(m_bodies[i]);
         const SolverNodes& nodes = m_bodies[i].nodes();
-        const auto isHeld = [&](const SolverContact& impact)
-        {
-            return std::any_of(impact.m_nodes, impact.m_nodes + 3,
-                               [&](int node) { return node >= 0 && !(nodes.inverseMass(std::size_t(node)) > 0); });
-        };
+        const auto isHeld = [&](const SolverContact& impact) { return anyHeld(nodes, impact.m_nodes); };
         impacts.erase(std::remove_if(impacts.begin(), impacts.end(), isHeld), impacts.end());
-        if (!anyCuts(impacts)) continue;
-        m_state.m_statistics.m_status |= kStepSurfacePassed;
-        m_mirrors[i]->startAnew();
+        if (anyCuts(impacts)) tellPassed(i);
     }
+}
+
+// Returns whether a feature starts the step on a surface. It may leave it to either side: no contact can tell which is
+// right.
+bool CollisionStep::startsOnSurface(const BodyContacts& body) const
+{
+    const float most = kOnSurface * body.m_contacts.m_leastThickness;
+    for (const FeatureContacts& feature : body.m_contacts.m_features)
+        for (std::uint32_t i = 0; i < feature.m_count; ++i)
+            if (std::fabs(feature.m_contacts[i].m_gap0) < most && !anyHeld(body.nodes(), feature.nodes())) return true;
+    return false;
+}
+
+void CollisionStep::tellPassed(std::size_t body)
+{
+    m_state.m_statistics.m_status |= kStepSurfacePassed;
+    m_mirrors[body]->startAnew();
 }
 
 void CollisionStep::reportMeetingDeformed()
@@ -368,8 +389,7 @@ void CollisionStep::reportMeetingDeformed()
     {
         const std::size_t body = m_byCloth.at(pair.m_cloth);
         if (!pair.m_carriedStarts || m_bodies[body].m_leftOut || !m_starts.endsMeeting(pair.m_start)) continue;
-        m_state.m_statistics.m_status |= kStepSurfacePassed;
-        m_mirrors[body]->startAnew();
+        tellPassed(body);
     }
 }
 

@@ -232,6 +232,9 @@ void CollisionStep::end()
         if (body.m_wasTangled) limitSpeeds(*body.m_body, body.m_leftOut);
     }
     for (std::size_t i = 0; i < m_mirrors.size(); ++i)
+    {
         if (!m_bodies[i].m_isOnDevice) m_mirrors[i]->rememberEnds(m_state.threads());
+        if (startsOnSurface(m_bodies[i])) tellPassed(i);
+    }
 }
 }  // namespace drape
