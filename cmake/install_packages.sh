@@ -28,8 +28,8 @@ further=(
   python3-dev pybind11-dev python3-numpy python3-pytest mypy
   # tests; a simulated GPU; a display without a screen; fuzzing; the format of C++ and OpenCL C
   libgtest-dev oclgrind xvfb libgl1-mesa-dri clang libclang-rt-dev clang-format
-  # scene files against their schema; man pages
-  python3-jsonschema groff
+  # scene files against their schema; man pages; the API reference
+  python3-jsonschema groff doxygen
   # published data: unpacking
   xz-utils
 )

@@ -129,6 +129,10 @@ public:
         work([&]
              { return m_world->setVertices(obstacle, positions.data(), std::size_t(positions.size()) / 3, teleport); });
     }
+    void leaveOutTriangles(int obstacle, const Indices& triangles)
+    {
+        work([&] { return m_world->leaveOutTriangles(obstacle, triangles.data(), std::size_t(triangles.size())); });
+    }
     void setPinned(int cloth, const Indices& nodes, bool pinned)
     {
         work([&] { return m_world->setPinned(cloth, nodes.data(), std::size_t(nodes.size()), pinned); });
@@ -280,6 +284,7 @@ void bindWorld(py::module_& module)
         .def("remove_obstacle", &PyWorld::removeObstacle)
         .def("set_pose", &PyWorld::setPose)
         .def("set_vertices", &PyWorld::setVertices)
+        .def("leave_out_triangles", &PyWorld::leaveOutTriangles)
         .def("set_pinned", &PyWorld::setPinned)
         .def("set_positions", &PyWorld::setPositions)
         .def("set_velocities", &PyWorld::setVelocities)

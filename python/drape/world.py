@@ -95,6 +95,13 @@ class ClothWorld:
         """
         self._own.set_vertices(mesh, floats(vertices, (None, 3), "vertices"), teleport)
 
+    def leave_out_triangles(self, mesh: int, triangles: Indices) -> None:
+        """Leaves these triangles of an obstacle out of collision, and no others: doors and holes.
+
+        triangles: int32 (n,), their indices in add_mesh(). An empty sequence brings all of them back.
+        """
+        self._own.leave_out_triangles(mesh, indices(triangles, (None,), "triangles"))
+
     def set_pinned(self, cloth: int, nodes: Indices, pinned: bool = True) -> None:
         """Pins nodes, or lets them go with the masses that they had.
 

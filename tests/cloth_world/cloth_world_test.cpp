@@ -321,6 +321,23 @@ TEST_F(ClothWorldTest, ObstaclesCarryClothUnlessTheyTeleport)
         }
 }
 
+TEST_F(ClothWorldTest, TrianglesThatAreLeftOutLetClothThrough)
+{
+    for (const bool leavesOut : {false, true})
+    {
+        SetUp();
+        const int own = add(describeCloth(m_sheet)), plate = add(describeObstacle(m_plate));
+        std::vector<std::int32_t> all(m_plate.triangleCount());
+        for (std::size_t i = 0; i < all.size(); ++i)
+            all[i] = std::int32_t(i);
+        ASSERT_TRUE(m_world->leaveOutTriangles(plate, all.data(), all.size())) << m_world->error().text();
+        const std::size_t count = leavesOut ? all.size() : 0;
+        ASSERT_TRUE(m_world->leaveOutTriangles(plate, all.data(), count)) << m_world->error().text();
+        steps(60);
+        EXPECT_EQ(meanHeight(own) < -1, leavesOut) << meanHeight(own);
+    }
+}
+
 TEST_F(ClothWorldTest, LayersStayApartOnRequest)
 {
     for (const bool apart : {true, false})
@@ -510,6 +527,9 @@ TEST_F(ClothWorldTest, BadObstaclesAndArgumentsAreRefused)
         expectRefused(m_world->step(bad), "step: dt");
     expectRefused(m_world->setGravity(nullptr), "setGravity: gravity: the array is missing");
     expectRefused(m_world->setVertices(plate, m_plate.m_positions.data(), 3), "setVertices: the obstacle has another");
+    const std::int32_t triangle = std::int32_t(m_plate.triangleCount());
+    expectRefused(m_world->leaveOutTriangles(plate, &triangle, 1),
+                  "leaveOutTriangles: triangles: there is no triangle");
     const std::int32_t node = -1;
     expectRefused(m_world->setPinned(own, &node, 1, true), "setPinned: nodes: there is no node -1");
     expectRefused(m_world->setPositions(own, nullptr, 1, nullptr), "setPositions: nodes: the array is missing");

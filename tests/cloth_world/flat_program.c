@@ -159,6 +159,10 @@ static const char* useWorld(DrapeWorld* world)
     if (!problem) problem = useNodes(world, own);
     if (problem) return problem;
     CHECK(drapeWorldSetVertices(world, below, floor, 3, 1) == DRAPE_OK);
+    const int32_t triangles[] = {0, 1};
+    CHECK(drapeWorldLeaveOutTriangles(world, below, triangles, 1) == DRAPE_OK);
+    CHECK(drapeWorldLeaveOutTriangles(world, below, triangles, 2) == DRAPE_BAD_INPUT);
+    CHECK(drapeWorldLeaveOutTriangles(world, below, NULL, 0) == DRAPE_OK);
     CHECK(drapeWorldStep(world, 0) == DRAPE_BAD_INPUT);
     CHECK(drapeWorldRemoveCloth(world, own) == DRAPE_OK && drapeWorldRemoveCloth(world, own) == DRAPE_BAD_INPUT);
     CHECK(drapeWorldRemoveObstacle(world, below) == DRAPE_OK);

@@ -122,6 +122,19 @@ def test_pins_hold_follow_and_let_go(world, sheet):
     assert positions[:, 1].max() < 0.3
 
 
+@pytest.mark.parametrize("leaves_out", [False, True])
+def test_triangles_that_are_left_out_let_cloth_through(world, sheet, plate, leaves_out):
+    cloth, mesh = world.add_cloth(*sheet[:2]), world.add_mesh(*plate[:2])
+    world.leave_out_triangles(mesh, numpy.arange(len(plate.triangles), dtype=numpy.int32))
+    if not leaves_out:
+        world.leave_out_triangles(mesh, [])
+    for _ in range(60):
+        world.step(DT)
+    assert (world.positions(cloth)[:, 1].mean() < -1) == leaves_out
+    with pytest.raises(ValueError, match="there is no triangle -1"):
+        world.leave_out_triangles(mesh, [-1])
+
+
 @pytest.mark.parametrize("how", ["pose", "vertices"])
 def test_obstacles_carry_cloth(world, sheet, plate, how):
     cloth, lift = world.add_cloth(*sheet[:2]), world.add_mesh(*plate[:2])

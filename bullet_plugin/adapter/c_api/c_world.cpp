@@ -106,6 +106,12 @@ DrapeResult drapeWorldSetVertices(DrapeWorld* world, int obstacle, const float* 
                      [&](ClothWorld& own) { return own.setVertices(obstacle, positions, vertexCount, teleport != 0); });
 }
 
+DrapeResult drapeWorldLeaveOutTriangles(DrapeWorld* world, int obstacle, const int32_t* triangles, size_t count)
+{
+    return callWorld(world, "drapeWorldLeaveOutTriangles",
+                     [&](ClothWorld& own) { return own.leaveOutTriangles(obstacle, triangles, count); });
+}
+
 DrapeResult drapeWorldSetPinned(DrapeWorld* world, int cloth, const int32_t* nodes, size_t count, int pinned)
 {
     return callWorld(world, "drapeWorldSetPinned",

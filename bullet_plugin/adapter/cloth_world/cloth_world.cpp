@@ -75,6 +75,7 @@ void ClothWorld::Implementation::removeObstacle(std::unique_ptr<ObstacleBody>& o
 {
     m_world.removeRigidBody(&obstacle->body());
     m_plugin.setOneSided(&obstacle->shape(), false);
+    m_plugin.setTriangleFilter(&obstacle->shape(), nullptr);
     m_plugin.release(&obstacle->body());
     m_stepped.erase(&obstacle->body());
     obstacle.reset();
@@ -236,6 +237,27 @@ bool ClothWorld::setVertices(int obstacle, const float* positions, std::size_t v
                            if (teleport) self.m_plugin.teleported(&body.body());
                            return true;
                        });
+}
+
+bool ClothWorld::leaveOutTriangles(int obstacle, const std::int32_t* triangles, std::size_t count)
+{
+    Implementation& self = *m_implementation;
+    const auto leaveOut = [&]
+    {
+        ObstacleBody& body = self.obstacle(obstacle);
+        requireIndices(triangles, count, body.triangleCount(), "triangles", "triangle");
+        TriangleFilter filter;
+        if (count > 0)
+        {
+            std::vector<bool> collides(body.triangleCount(), true);
+            for (std::size_t i = 0; i < count; ++i)
+                collides[std::size_t(triangles[i])] = false;
+            filter = [collides = std::move(collides)](int, int triangle) { return collides[std::size_t(triangle)]; };
+        }
+        self.m_plugin.setTriangleFilter(&body.shape(), std::move(filter));
+        return true;
+    };
+    return self.answer("leaveOutTriangles", false, leaveOut);
 }
 
 bool ClothWorld::step(double dt)

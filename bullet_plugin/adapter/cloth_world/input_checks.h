@@ -39,14 +39,20 @@ void requireValues(const Value* values, std::size_t count, const char* name)
             throw InvalidInput(std::string(name) + ": value " + std::to_string(i) + " is not finite");
 }
 
-// Refuses a missing array, and indices outside [0, nodeCount).
+// Refuses a missing array, and indices outside [0, limit). thing: what they are indices of.
+inline void requireIndices(const std::int32_t* indices, std::size_t count, std::size_t limit, const char* name,
+                           const char* thing)
+{
+    if (count > 0 && !indices) throw InvalidInput(std::string(name) + ": the array is missing");
+    for (std::size_t i = 0; i < count; ++i)
+        if (indices[i] < 0 || std::size_t(indices[i]) >= limit)
+            throw InvalidInput(std::string(name) + ": there is no " + thing + " " + std::to_string(indices[i]) +
+                               " among " + std::to_string(limit));
+}
+
 inline void requireNodes(const std::int32_t* nodes, std::size_t count, std::size_t nodeCount, const char* name)
 {
-    if (count > 0 && !nodes) throw InvalidInput(std::string(name) + ": the array is missing");
-    for (std::size_t i = 0; i < count; ++i)
-        if (nodes[i] < 0 || std::size_t(nodes[i]) >= nodeCount)
-            throw InvalidInput(std::string(name) + ": there is no node " + std::to_string(nodes[i]) + " among " +
-                               std::to_string(nodeCount));
+    requireIndices(nodes, count, nodeCount, name, "node");
 }
 
 // Refuses a mesh that Bullet cannot have: indices out of range, positions that are not finite, too many of anything.

@@ -24,6 +24,7 @@ public:
     void setVertices(const float* positions);
 
     std::size_t vertexCount() const { return m_positions.size() / 3; }
+    std::size_t triangleCount() const { return m_triangles.size() / 3; }
     btBvhTriangleMeshShape& shape() { return *m_shape; }
     btRigidBody& body() { return *m_body; }
 

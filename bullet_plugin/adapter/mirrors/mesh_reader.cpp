@@ -22,6 +22,9 @@ namespace
 constexpr std::int64_t kSmallPart = 384;
 constexpr std::int64_t kSamplesPerPart = 32;
 
+// Number of triangles per part that sampledEdge() measures, some: enough for a mean to within a tenth.
+constexpr int kEdgeSamples = 256;
+
 // Vertices of the stretch that a part uses, at most, for each corner of its triangles, for a table of that stretch.
 constexpr std::int64_t kStretchPerCorner = 8;
 
@@ -288,6 +291,20 @@ std::uint64_t signatureOf(const btCollisionShape& shape, const std::vector<btVec
     return hash.value();
 }
 
+// Adds the length of a triangle's edges, m. Ignores edges that are not finite or have a negative index.
+void addEdges(const LockedPart& part, int triangle, const btVector3& scaling, double& sum, int& count)
+{
+    for (int k = 0; k < 3; ++k)
+    {
+        const std::int64_t from = part.index(triangle, k), to = part.index(triangle, (k + 1) % 3);
+        if (from < 0 || to < 0) continue;
+        const double length = double(((part.vertex(from) - part.vertex(to)) * scaling).length());
+        if (!std::isfinite(length)) continue;
+        sum += length;
+        ++count;
+    }
+}
+
 // A vertex that is not finite belongs to no triangle any more; zero keeps it out of every minimum and maximum.
 void clearInvalid(std::vector<float>& positions)
 {
@@ -330,6 +347,22 @@ btScalar marginBeyondBounds(const btCollisionShape& shape)
 {
     if (shape.getShapeType() == GIMPACT_SHAPE_PROXYTYPE || !isMeshShape(shape)) return 0;
     return std::max(btScalar(0), marginOf(shape) - resolve(shape).m_shape->getMargin());
+}
+
+double sampledEdge(const btCollisionShape& shape)
+{
+    if (!isMeshShape(shape)) return 0;
+    const ScaledMesh source = resolve(shape);
+    double sum = 0;
+    int count = 0;
+    for (int p = 0; p < source.mesh().getNumSubParts(); ++p)
+    {
+        const LockedPart part(source.mesh(), p);
+        const int stride = std::max(1, part.triangleCount() / kEdgeSamples);
+        for (int triangle = 0; triangle < part.triangleCount(); triangle += stride)
+            addEdges(part, triangle, source.m_scaling, sum, count);
+    }
+    return count > 0 ? sum / count : 0;
 }
 
 void readMesh(const btCollisionShape& shape, const btTransform& pose, const ReadPart& part, WorldMesh& mesh)

@@ -51,6 +51,9 @@ const btCollisionShape* meshShapeOf(const btCollisionShape& shape);
 // include its child's margin, and a negative margin makes them smaller than the mesh.
 btScalar marginBeyondBounds(const btCollisionShape& shape);
 
+// Returns the mean edge of a mesh's triangles, m, from samples of each part; 0 for shapes that are no mesh.
+double sampledEdge(const btCollisionShape& shape);
+
 void readMesh(const btCollisionShape& shape, const btTransform& pose, const ReadPart& part, WorldMesh& mesh);
 
 // Changes when the mesh's arrays, counts, scaling, bounding box or one of the sampled vertices change. All points of a

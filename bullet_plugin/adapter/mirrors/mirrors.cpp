@@ -22,6 +22,9 @@ constexpr float kMostMotion = 0.5f;
 // Part of a plane or height field that is read, in sizes of the cloths near it, at most. More was needed before.
 constexpr btScalar kWidestPart = 4;
 
+// Steps after which an object that is put elsewhere again does not do so in step after step.
+constexpr std::uint64_t kJumpGap = 8;
+
 // Nodes that a thread checks per turn; fewer do not justify waking one.
 constexpr std::size_t kNodesPerJob = 4096;
 
@@ -206,6 +209,18 @@ void ObstacleMirror::beginStep(bool oneSided, const TriangleFilter* filter)
     m_wanted.clear();
     m_oneSided = oneSided;
     m_part.m_filter = filter;
+}
+
+bool ObstacleMirror::countJump(const btTransform& body, bool moves)
+{
+    if (m_jumpChecked == m_lastSeen) return false;  // another cloth's pair has counted it
+    m_jumpChecked = m_lastSeen;
+    if (moves || !m_continued || m_isTeleported || body == m_bodyEnd) return false;
+    const bool isOften = jumpsOften();
+    if (!isOften && m_jumpStep + kJumpGap < m_lastSeen) m_jumps = 0;
+    m_jumpStep = m_lastSeen;
+    if (!isOften) ++m_jumps;
+    return jumpsOften() && !isOften;
 }
 
 void ObstacleMirror::place(const btTransform& place)

@@ -156,6 +156,11 @@ public:
     void setBodyEnd(const btTransform& body) { m_bodyEnd = body; }
     // Declares that the coming change of the place is no motion.
     void teleport() { m_isTeleported = true; }
+    // Counts the step if its object is somewhere else than where it ended the last one, without a motion and without
+    // teleport(). Returns true in the step from which jumpsOften() is true. Call before place().
+    bool countJump(const btTransform& body, bool moves);
+    // Returns whether the object was put elsewhere in step after step.
+    bool jumpsOften() const { return m_jumps >= kManyJumps; }
     // Declares that the obstacle is no longer where the last step left it, see ClothMirror. refresh() does so itself if
     // the pose or the mesh changed by anything except the motion over a step.
     void startAnew() { ++m_startRevision; }
@@ -204,6 +209,9 @@ private:
     Placing m_placing = Placing::Stays;
     std::uint64_t m_placedStep = 0;
     bool m_isTeleported = false, m_movesInCompound = false;
+    static constexpr int kManyJumps = 4;
+    int m_jumps = 0;  // see countJump(), each within some steps of the one before
+    std::uint64_t m_jumpStep = 0, m_jumpChecked = 0;
     std::uint64_t m_startRevision = 0, m_positionRevision = 0;
     std::unique_ptr<MeshProbe> m_before;  // probe of a mesh whose vertices moved
     std::vector<float> m_positions;       // its positions in the pipeline

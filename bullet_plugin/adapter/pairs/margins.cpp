@@ -8,9 +8,15 @@ namespace drape
 {
 namespace
 {
-// Maximum and minimum thickness, in mean edge lengths of the cloth.
-constexpr double kMostEdges = 4;
+// Maximum and minimum thickness, in mean edge lengths of the cloth. docs/tuning.md advises one at most; Bullet's
+// default margin of 0.25 m gives 3.6 to a patch of 2 m with 33 x 33 nodes. The project's own scenes have less than one.
+constexpr double kMostEdges = 2;
 constexpr double kLeastEdges = 0.005;
+
+// Maximum thickness, in mean edge lengths of the mesh. The project's finest mesh, a dragon, has 4.7.
+constexpr double kMostMeshEdges = 8;
+
+constexpr char kMargins[] = "the margins of the soft body and of the obstacle";
 
 // Returns the mean length of the body's face edges, or of its links if it has no faces.
 double meanEdgeOf(const btSoftBody& cloth)
@@ -48,17 +54,26 @@ btScalar sizeOf(const btCollisionShape& shape)
     shape.getAabb(btTransform::getIdentity(), low, high);
     return largestOf(high - low) - 2 * (shape.isConvex() ? meshMargin(shape) : shape.getMargin());
 }
-std::string edgeRemark(double thickness, double edge)
+
+std::string tooThick(double thickness, double edge, const char* whose)
 {
-    char line[256] = "";
-    if (thickness > kMostEdges * edge)
-        std::snprintf(
-            line, sizeof(line),
-            "the thickness (%g m) is %.3g times the mean edge of the cloth (%g m); pairs grow with its square",
-            thickness, thickness / edge, edge);
-    else if (thickness < kLeastEdges * edge)
-        std::snprintf(line, sizeof(line), "the thickness (%g m) is a %.0fth of the mean edge of the cloth (%g m)",
-                      thickness, edge / thickness, edge);
+    char line[256];
+    std::snprintf(line, sizeof(line),
+                  "the thickness (%g m, %s) is %.3g times the mean edge of the %s (%g m); steps are slow, since pairs "
+                  "grow with its square",
+                  thickness, kMargins, thickness / edge, whose, edge);
+    return line;
+}
+
+// meshEdge: 0 for obstacles that are no meshes.
+std::string edgeRemark(double thickness, double edge, double meshEdge)
+{
+    if (thickness > kMostEdges * edge) return tooThick(thickness, edge, "cloth");
+    if (meshEdge > 0 && thickness > kMostMeshEdges * meshEdge) return tooThick(thickness, meshEdge, "mesh");
+    if (!(thickness < kLeastEdges * edge)) return std::string();
+    char line[256];
+    std::snprintf(line, sizeof(line), "the thickness (%g m) is a %.0fth of the mean edge of the cloth (%g m)",
+                  thickness, edge / thickness, edge);
     return line;
 }
 }  // namespace
@@ -66,6 +81,19 @@ std::string edgeRemark(double thickness, double edge)
 btScalar thicknessOf(const btSoftBody& cloth, const btCollisionShape& obstacle)
 {
     return std::max(kMinThickness, marginOf(*cloth.getCollisionShape()) + meshMargin(obstacle));
+}
+
+std::string selfThicknessRemark(const btSoftBody& cloth, btScalar thickness)
+{
+    const double edge = meanEdgeOf(cloth);
+    if (!(edge > 0 && double(thickness) > kMostEdges * edge)) return std::string();
+    char line[256];
+    std::snprintf(
+        line, sizeof(line),
+        "the thickness of its collision with cloth (%g m) is %.3g times its mean edge (%g m); steps are slow, "
+        "since pairs grow with its square",
+        double(thickness), double(thickness) / edge, edge);
+    return line;
 }
 
 std::string marginRemark(const btSoftBody& cloth, const btCollisionShape& obstacle)
@@ -91,11 +119,10 @@ std::string marginRemark(const btSoftBody& cloth, const btCollisionShape& obstac
          {std::make_pair("mesh", double(sizeOf(obstacle))), std::make_pair("soft body", double(sizeOf(cloth)))})
     {
         if (!(thickness >= size)) continue;
-        std::snprintf(line, sizeof(line),
-                      "the thickness (%g m, the margins of the soft body and of the mesh) is as large as the %s (%g m)",
-                      thickness, name, size);
+        std::snprintf(line, sizeof(line), "the thickness (%g m, %s) is as large as the %s (%g m)", thickness, kMargins,
+                      name, size);
         return line;
     }
-    return edgeRemark(thickness, meanEdgeOf(cloth));
+    return edgeRemark(thickness, meanEdgeOf(cloth), sampledEdge(obstacle));
 }
 }  // namespace drape

@@ -22,7 +22,11 @@ inline btScalar marginOf(const btCollisionShape& shape)
 btScalar thicknessOf(const btSoftBody& cloth, const btCollisionShape& obstacle);
 
 // Describes in one line a problem with the margins of a soft body and a mesh's shape; empty if there is none. Problems
-// are a negative margin, and a thickness as large as the mesh or the cloth, or out of proportion to the cloth's edges.
-// O(n) in the nodes and faces.
+// are a negative margin, and a thickness as large as the mesh or the cloth, or out of proportion to the edges of the
+// cloth or of the mesh. O(n) in the nodes and faces; samples a mesh.
 std::string marginRemark(const btSoftBody& cloth, const btCollisionShape& obstacle);
+
+// Describes in one line a thickness (m) of cloth with cloth that is out of proportion to the body's edges; empty if it
+// is not.
+std::string selfThicknessRemark(const btSoftBody& cloth, btScalar thickness);
 }  // namespace drape

@@ -59,7 +59,15 @@ void SoftBodySolver::solveConstraints(btScalar dt)
     m_work->m_solved.clear();
     m_work->m_detected = false;
     if (m_work->m_failures == m_state->failures()) guarded([&] { m_work->solveStep(); }, failed);
-    if (m_work->m_failures != m_state->failures()) m_work->endFailedStep();
+    if (m_work->m_failures != m_state->failures()) return m_work->endFailedStep();
+    if (!m_state->ready()) return;
+    // Lines for which there is no memory are lost.
+    const auto tell = [&]
+    {
+        m_work->m_log.endStep(m_softBodySet, m_work->m_meetings.any());
+        return true;
+    };
+    guardedOr(false, tell);
 }
 
 void SoftBodySolver::processCollision(btSoftBody* body, const btCollisionObjectWrapper* obstacle)

@@ -14,6 +14,7 @@
 #include "bullet_plugin/adapter/cloth_cloth/cloth_meetings.h"
 #include "bullet_plugin/adapter/collision/collision_step.h"
 #include "bullet_plugin/adapter/solver/bullet_links.h"
+#include "bullet_plugin/adapter/solver/step_log.h"
 #include "bullet_plugin/adapter/solver/substep_body.h"
 #include "bullet_plugin/adapter/wiring/plugin_state.h"
 #include "bullet_plugin/core/solver/step_solver.h"
@@ -153,6 +154,7 @@ struct SoftBodySolver::Work
     btScalar m_dt = 0;                      // s, of the prediction
     std::unique_ptr<CollisionStep> m_step;  // null until it is needed
     ClothMeetings m_meetings{m_state};
+    StepLog m_log{m_state};
     std::unique_ptr<StepSolver> m_solver;
     UsageWatch m_usage;
     std::unordered_map<const btSoftBody*, std::unique_ptr<SubstepBody>> m_substeps;  // bodies whose links Drape solves

@@ -11,6 +11,11 @@ CollisionConfiguration::CollisionConfiguration(Plugin& plugin, const btDefaultCo
 {
 }
 
+CollisionConfiguration::~CollisionConfiguration()
+{
+    if (m_state) m_state->forgetWorlds(static_cast<const btCollisionConfiguration*>(this));
+}
+
 btCollisionAlgorithmCreateFunc* CollisionConfiguration::getCollisionAlgorithmCreateFunc(int proxyType0, int proxyType1)
 {
     const auto stock = [&]

@@ -1,9 +1,11 @@
 #include "bullet_plugin/adapter/wiring/diagnosis.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <map>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "BulletCollision/CollisionDispatch/btCollisionWorld.h"
@@ -12,6 +14,7 @@
 #include "bullet_plugin/adapter/mirrors/solid_links.h"
 #include "bullet_plugin/adapter/pairs/eligibility.h"
 #include "bullet_plugin/adapter/pairs/margins.h"
+#include "bullet_plugin/adapter/wiring/log_text.h"
 #include "bullet_plugin/adapter/wiring/plugin_state.h"
 #include "bullet_plugin/adapter/wiring/wiring.h"
 #include "bullet_plugin/core/probe/mesh_probe.h"
@@ -59,10 +62,15 @@ public:
         for (int i = 0; i < objects.size(); ++i)
         {
             btSoftBody* const cloth = btSoftBody::upcast(objects[i]);
-            if (!cloth) continue;
+            if (!cloth)
+            {
+                addRemark("", m_plugin.state()->jumpRemark(*objects[i]));
+                continue;
+            }
             m_plugin.state()->m_kept.fetch(*cloth);
             addCloth(*cloth);
         }
+        addClothPairs();
         const std::string status = statusText(m_plugin.statistics().m_status);
         if (!status.empty()) add("the last step: " + status);
         return m_text;
@@ -70,7 +78,13 @@ public:
 
 private:
     void add(const std::string& line) { m_text += (m_text.empty() ? "" : "\n") + line; }
+    void addRemark(const std::string& name, const std::string& remark)
+    {
+        if (!remark.empty()) add(name + remark);
+    }
     void addSetup();
+    void addLinks(const btSoftBody& cloth);
+    void addClothPairs();
     void addCloth(const btSoftBody& cloth);
     void addPair(const btSoftBody& cloth, const btCollisionObject& object, const btCollisionShape& shape,
                  const btTransform& pose);
@@ -95,8 +109,38 @@ void Diagnosis::addSetup()
             "this plugin, or call drape::install()");
 }
 
+// A body that the settings, or Bullet in double precision, leave to Bullet is no problem of the world.
+void Diagnosis::addLinks(const btSoftBody& cloth)
+{
+    PluginState& state = *m_plugin.state();
+    if (!state.ready() || state.settings().m_solver == Solver::Bullet || sizeof(btScalar) != sizeof(float)) return;
+    if (!state.ownsSolver(cloth.getSoftBodySolver())) return;
+    const char* const reason = reasonForBulletsLinks(state, cloth);
+    if (reason) add(nameOf(cloth) + ": Bullet solves its links, so that it stretches more: " + reason);
+}
+
+// Adds what the last step found of cloth with cloth, as far as the bodies are in this world.
+void Diagnosis::addClothPairs()
+{
+    std::map<std::pair<const btSoftBody*, const btSoftBody*>, ClothPairCounts> met;
+    for (const FlaggedPair& pair : m_plugin.state()->m_flagged)
+        if (pair.m_otherBody) met[std::minmax(pair.m_body, pair.m_otherBody)].add(pair.m_flag);
+    const btCollisionObjectArray& objects = m_world.getCollisionObjectArray();
+    const auto isHere = [&](const btSoftBody* body)
+    {
+        for (int i = 0; i < objects.size(); ++i)
+            if (objects[i] == body) return true;
+        return false;
+    };
+    for (const auto& [bodies, counts] : met)
+        if (isHere(bodies.first) && isHere(bodies.second)) add(clothPairText(*bodies.first, *bodies.second, counts));
+}
+
 void Diagnosis::addCloth(const btSoftBody& cloth)
 {
+    addLinks(cloth);
+    const SelfColliding* const self = m_plugin.state()->m_selfCollision.find(cloth);
+    if (self) addRemark(nameOf(cloth) + ": ", selfThicknessRemark(cloth, SelfCollision::thicknessOf(cloth, *self)));
     const void* const name = &cloth;
     if (!m_plugin.state()->ownsSolver(cloth.getSoftBodySolver()))
         add(format("soft body %p: the world's soft body solver is not a drape::SoftBodySolver of this plugin", name));
@@ -133,8 +177,7 @@ void Diagnosis::addPair(const btSoftBody& cloth, const btCollisionObject& object
     if (reasonForStock(*m_plugin.state(), cloth, object, shape)) return;
     const std::string pair =
         format("soft body %p and object %p: ", static_cast<const void*>(&cloth), static_cast<const void*>(&object));
-    const std::string margins = marginRemark(cloth, shape);
-    if (!margins.empty()) add(pair + margins);
+    addRemark(pair, marginRemark(cloth, shape));
     addIntersections(cloth, object, shape, pose);
 }
 

@@ -86,6 +86,7 @@ bool install(Plugin& plugin, btCollisionDispatcher& dispatcher, btBroadphaseInte
                          if (owner && owner != &state) return false;
                          forShapeTypes(give);
                          cleanSoftPairs(dispatcher, broadphase);
+                         state.forgetWorlds(static_cast<const btDispatcher*>(&dispatcher));
                          return true;
                      });
 }
@@ -106,6 +107,7 @@ bool uninstall(Plugin& plugin, btCollisionDispatcher& dispatcher, btBroadphaseIn
                          if (pluginOf(dispatcher) != plugin.state().get()) return false;
                          forShapeTypes(give);
                          cleanSoftPairs(dispatcher, broadphase);
+                         plugin.state()->forgetWorlds(static_cast<const btDispatcher*>(&dispatcher));
                          return true;
                      });
 }

@@ -302,6 +302,7 @@ void Plugin::setSelfCollision(const btSoftBody& body, bool collides, double thic
                   [&]
                   {
                       m_state->m_selfCollision.set(body, btScalar(thickness));
+                      if (!(thickness >= 0)) m_state->tellThickness(body, thickness);
                       return true;
                   });
     else

@@ -4,7 +4,6 @@
 
 #include "BulletCollision/CollisionDispatch/btCollisionDispatcher.h"
 #include "BulletSoftBody/btSoftBodySolvers.h"
-#include "LinearMath/btQuickprof.h"
 #include "bullet_plugin/adapter/mirrors/convex_reader.h"
 #include "bullet_plugin/adapter/pairs/eligibility.h"
 #include "bullet_plugin/adapter/wiring/wiring.h"
@@ -13,35 +12,6 @@
 
 namespace drape
 {
-namespace
-{
-// Shortest time for which compiled kernels are reported, ms. Programs from a cache take less, also on a busy machine.
-constexpr double kLongBuildMs = 3000;
-
-std::string nameOf(const btSoftBody& body)
-{
-    char text[48];
-    std::snprintf(text, sizeof text, "soft body %p", static_cast<const void*>(&body));
-    return text;
-}
-
-// Calls the app's function in the app's floating-point environment. Returns false if it throws: the step goes on.
-template <class Call>
-bool runApps(const Call& call)
-{
-    const CallersFloats floats;
-    try
-    {
-        call();
-        return true;
-    }
-    catch (...)
-    {
-        return false;
-    }
-}
-}  // namespace
-
 PluginState::PluginState(const Settings& settings)
     : m_selfCollision(settings.m_solver != Solver::Bullet),
       m_settings(settings),
@@ -67,31 +37,6 @@ const DeviceReport& PluginState::device() const
     return m_pipeline ? m_pipeline->deviceReport() : m_failedDevice;
 }
 
-void PluginState::log(const std::string& line) const
-{
-    // A failure of the log itself has nowhere to go.
-    if (m_settings.m_log) runApps([&] { m_settings.m_log(line.c_str()); });
-}
-
-void PluginState::tellContacts(const btSoftBodySolver* solver, double timeStep)
-{
-    const std::shared_ptr<const ContactListener> listener = m_listener;  // the call may replace it
-    if (!listener) return;
-    BT_PROFILE("Drape listener");
-    const StepContacts contacts = {solver, timeStep, m_records.list()};
-    if (runApps([&] { (*listener)(contacts); }) || m_toldListener) return;
-    m_toldListener = true;
-    log("the contact listener threw an exception, which is dropped, as later ones are");
-}
-
-void PluginState::tellJobs()
-{
-    if (m_toldJobs || !m_threads->appFailed()) return;
-    m_toldJobs = true;
-    log("Settings::m_parallelFor threw an exception, which is dropped, as later ones are; the calling thread did the "
-        "rest of its jobs");
-}
-
 ThreadWatch::Call PluginState::beginCall()
 {
     ThreadWatch::Call call(m_calls);
@@ -111,34 +56,6 @@ void PluginState::takeDevice(bool wait)
     m_found.keepList();
     m_pipeline->endStart();
     tellDevice();
-}
-
-void PluginState::tellDevice()
-{
-    const DeviceReport& report = device();
-    m_toldError = error().failed();
-    if (m_toldError)
-    {
-        const std::string detail = error().m_detail.substr(0, error().m_detail.find('\n'));
-        return log((ready() ? "the host computes: " : "Drape is off: ") + error().m_call +
-                   (detail.empty() ? "" : "; " + detail));
-    }
-    if (report.m_fromCache || report.m_buildMs < kLongBuildMs) return;
-    char time[48];
-    std::snprintf(time, sizeof time, " were compiled in %.1f s", report.m_buildMs / 1000);
-    log("the kernels for " + m_pipeline->deviceName() + time);
-}
-
-void PluginState::tellDispatchers(const btAlignedObjectArray<btSoftBody*>& bodies)
-{
-    for (int i = 0; i < bodies.size(); ++i)
-    {
-        btDispatcher* const dispatcher = bodies[i]->m_worldInfo ? bodies[i]->m_worldInfo->m_dispatcher : nullptr;
-        if (!dispatcher || !m_checkedWorlds.insert(dispatcher).second || pluginOf(*dispatcher) == this) continue;
-        log(nameOf(*bodies[i]) +
-            ": its world's dispatcher does not have this plugin's algorithm, so that Bullet's own collision handles "
-            "meshes; make the dispatcher with a drape::CollisionConfiguration, or call drape::install()");
-    }
 }
 
 void PluginState::forgetScene() noexcept
@@ -192,6 +109,7 @@ void PluginState::removeSolver(const btSoftBodySolver* solver)
     dropNotes(solver);
     m_motions.erase(solver);
     m_stepped.erase(solver);
+    forgetWorlds(solver);
     m_solvers.erase(std::remove(m_solvers.begin(), m_solvers.end(), solver), m_solvers.end());
 }
 
@@ -204,7 +122,7 @@ void PluginState::beginStep(const btSoftBodySolver* solver, const btAlignedObjec
 {
     takeDevice(false);
     if (ready() && m_pipeline->deviceFailed() && !m_toldError) tellDevice();
-    tellDispatchers(bodies);
+    tellDispatchers(solver, bodies);
     WorldBodies& before = m_stepped[solver];
     WorldBodies stepped;
     stepped.reserve(static_cast<std::size_t>(bodies.size()));
@@ -262,15 +180,6 @@ void PluginState::updateNodeTree(btSoftBody& body)
         drape::updateNodeTree(body, m_threads.get());
         found->m_tree = NodeTree::Current;
     }
-}
-
-void PluginState::markUnstepped(const btSoftBody& body)
-{
-    m_unstepped[&body] = body.getBroadphaseHandle();
-    if (ownsSolver(body.getSoftBodySolver()) || !m_checkedWorlds.insert(body.m_worldInfo).second) return;
-    log(nameOf(body) +
-        ": its world's soft body solver is not a drape::SoftBodySolver of this plugin, so that Bullet's "
-        "own collision handles meshes");
 }
 
 bool PluginState::steps(const btSoftBody& body) const

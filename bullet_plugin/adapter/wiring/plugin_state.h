@@ -31,6 +31,7 @@
 #include "bullet_plugin/core/public_call.h"
 #include "bullet_plugin/core/threads/thread_team.h"
 
+class btCollisionConfiguration;
 class btCollisionDispatcher;
 class btSoftBodySolver;
 
@@ -117,6 +118,9 @@ public:
     // Returns the solver of this plugin that stepped the body last, in the world that the body is in now; null for
     // none. A body's own solver may be another one: btSoftBody::setSoftBodySolver() does not change who steps it.
     const btSoftBodySolver* steppingSolver(const btSoftBody& body) const;
+    // Forgets what the log has about worlds with that solver, dispatcher or collision configuration, since another one
+    // may get its address.
+    void forgetWorlds(const void* gone);
     // Records that a dispatcher had a pair of the body while no solver of this plugin steps it.
     void markUnstepped(const btSoftBody& body);
     // Returns whether a solver of this plugin steps the body, or will as far as is known.
@@ -169,6 +173,14 @@ public:
 
     // Calls the listener, if there is one, with the records of a step of the solver. timeStep: s.
     void tellContacts(const btSoftBodySolver* solver, double timeStep);
+    // Returns a line about an object that is put elsewhere beside cloth in step after step; empty if it is not.
+    std::string jumpRemark(const btCollisionObject& object) const;
+    // Logs that a thickness of cloth with cloth is negative, or no number.
+    void tellThickness(const btSoftBody& body, double thickness) const;
+    // Logs that a call of Plugin has no effect on a shape. whatFor: the shapes on which it has one.
+    void tellNoEffect(const btCollisionShape& shape, const char* call, const char* whatFor) const;
+    // Logs kernels that were compiled since the device was taken, such as those of cloth with cloth.
+    void tellCompiled();
     // Logs a failure of the app's job system.
     void tellJobs();
 
@@ -215,8 +227,16 @@ private:
     void forgetScene() noexcept;
     // Reports in the log what the pipeline says of its device.
     void tellDevice();
-    // Reports a world of these bodies once if its dispatcher gives this plugin no pairs.
-    void tellDispatchers(const btAlignedObjectArray<btSoftBody*>& bodies);
+    // Reports kernels if they were compiled for long.
+    void tellKernels(const char* which, double ms) const;
+    // Reports a world of these bodies once if its dispatcher gives this plugin no pairs. Checks the worlds of bodies
+    // that the solver's last step did not have.
+    void tellDispatchers(const btSoftBodySolver* solver, const btAlignedObjectArray<btSoftBody*>& bodies);
+    void tellDispatcher(const btSoftBodySolver* solver, const btSoftBody& body);
+    // Reports an obstacle of which a mirror has begun to jump often, unless another one of its mirrors did before.
+    void tellJumps(const btCollisionObject& object);
+    // Returns whether the log has a line about that world.
+    bool isToldOf(const void* place, const btDispatcher* dispatcher) const;
 
     const Settings m_settings;
     std::unique_ptr<Pipeline> m_pipeline;
@@ -226,6 +246,7 @@ private:
     std::string m_failedReason = "an exception ended a call, see Plugin::error()";  // made before it is needed
     std::uint64_t m_failures = 0;
     bool m_mustRestart = false;
+    double m_toldCompileMs = 0;                       // the log has these compilations
     bool m_toldError = false;                         // the log has the device's failure
     bool m_toldListener = false, m_toldJobs = false;  // the log has an exception of the app's function
     PairCreateFunction m_create, m_createSwapped;
@@ -247,6 +268,13 @@ private:
     std::unordered_map<const btCollisionShape*, TriangleFilter> m_filters;
     std::uint64_t m_step = 0;
     ThreadWatch m_calls;
-    std::unordered_set<const void*> m_checkedWorlds;  // dispatchers of stepped bodies and the others' worlds' data
+    // A world that the log has a line about. Addresses are compared and never followed.
+    struct ToldWorld
+    {
+        const void* m_place;  // the solver, or without one of this plugin the world's data for soft bodies
+        const btDispatcher* m_dispatcher;
+        const btCollisionConfiguration* m_configuration;
+    };
+    std::vector<ToldWorld> m_toldWorlds;
 };
 }  // namespace drape

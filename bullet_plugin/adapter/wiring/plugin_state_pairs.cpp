@@ -218,6 +218,7 @@ void PluginState::prepareAll(const btCollisionObject* const* objects, int count)
     }
     if (anyMeets) m_pipeline->prepareSearch();
     m_pipeline->prepare();
+    tellCompiled();
 }
 
 void PluginState::prepareCloth(const btSoftBody& body)
@@ -324,6 +325,8 @@ void PluginState::setOneSided(const btCollisionShape* shape, bool oneSided)
 {
     const auto set = [&]
     {
+        if (oneSided && shape && !isReadable(*shape))
+            tellNoEffect(*shape, "setOneSided", "meshes, planes, height fields and convex shapes, also in compounds");
         if (oneSided)
             m_oneSided.insert(shape);
         else
@@ -336,6 +339,8 @@ void PluginState::setTriangleFilter(const btCollisionShape* shape, TriangleFilte
 {
     const auto set = [&]
     {
+        if (filter && shape && !isMeshShape(*shape) && shape->getShapeType() != TERRAIN_SHAPE_PROXYTYPE)
+            tellNoEffect(*shape, "setTriangleFilter", "meshes and height fields, also in compounds");
         if (filter)
             m_filters[shape] = std::move(filter);
         else
@@ -382,6 +387,8 @@ std::vector<PairNote> PluginState::takeNotes(const btSoftBodySolver* solver,
 void PluginState::settleMotion(PairNote& note)
 {
     ObstacleMirror& obstacle = obstacleMirror(note);
+    const btTransform& body = note.m_obstacle.m_object->getWorldTransform();
+    if (!note.m_mover && obstacle.countJump(body, note.m_motion.moves())) tellJumps(*note.m_obstacle.m_object);
     obstacle.place(note.m_place);
     note.m_movesPlace = obstacle.movesPlace();
     note.m_isMovable = note.m_isMovable || obstacle.movesInCompound();

@@ -183,6 +183,11 @@ void BackendSelector::reopen(BackendSelector& other)
     m_start = std::move(other.m_start);
 }
 
+double BackendSelector::compileMs() const
+{
+    return m_device ? m_device->compileMs() : 0;
+}
+
 Device* BackendSelector::device()
 {
     return m_device ? &m_device->device() : nullptr;

@@ -51,6 +51,8 @@ public:
     DeviceBackend* chosenDevice() { return m_report.m_onHost ? nullptr : m_device.get(); }
     // Returns the open device, also while the host runs the steps and after its failure; null without one.
     Device* device();
+    // Returns the time for which its kernels have been compiled so far, ms.
+    double compileMs() const;
     // Returns the open device for searches among cloths: a GPU, or one that the settings have cloth solved on. Null
     // without one, and after its failure, which a search may have met.
     SearchDevice searchDevice();

@@ -29,6 +29,7 @@ public:
     Device& device() { return *m_device; }
     SearchDevice searchDevice() const { return {m_device, m_programs}; }
     bool fromCache() const { return m_programs->fromCache(); }
+    double compileMs() const { return m_programs->compileMs(); }
 
     // Solves cloths; created if the settings may have them solved on this device.
     SolveStage& solveStage() { return m_solve; }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "bullet_plugin/core/stopwatch.h"
+
 namespace drape
 {
 ProgramSet::ProgramSet(Device& device, std::string cacheFolder, std::vector<Names> together, std::string defines)
@@ -24,8 +26,10 @@ cl::Program ProgramSet::load(const std::string& name)
     const auto known = m_programs.find(names);
     if (known != m_programs.end()) return known->second;
     ProgramBuild build;
+    Stopwatch watch;
     const cl::Program program = buildJoinedProgram(m_device, names, m_cacheFolder, build, m_defines);
     m_fromCache = m_fromCache && build.m_fromCache;
+    if (!build.m_fromCache) m_compileMs += watch.lapMs();
     m_programs.emplace(names, program);
     return program;
 }

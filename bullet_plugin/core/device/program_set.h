@@ -32,6 +32,8 @@ public:
     }
     // Returns whether all loaded programs came from the cache.
     bool fromCache() const { return m_fromCache; }
+    // Returns the time of builds that did not come from the cache, ms. Drivers may compile more at the first launch.
+    double compileMs() const { return m_compileMs; }
 
 private:
     Names namesWith(const std::string& name) const;
@@ -41,5 +43,6 @@ private:
     std::vector<Names> m_groups;
     std::map<Names, cl::Program> m_programs;
     bool m_fromCache = true;
+    double m_compileMs = 0;
 };
 }  // namespace drape

@@ -85,10 +85,18 @@ const DeviceReport& Pipeline::deviceReport() const
     return m_implementation->m_backends.report();
 }
 
-std::string Pipeline::deviceName() const
+DeviceInfo Pipeline::openDevice() const
 {
     const Device* const device = m_implementation->m_backends.device();
-    return device ? device->info().m_name : "host";
+    if (device) return device->info();
+    DeviceInfo host;
+    host.m_name = "host";
+    return host;
+}
+
+double Pipeline::compileMs() const
+{
+    return m_implementation->m_backends.compileMs();
 }
 
 MeshId Pipeline::addCloth(const MeshDescription& mesh)

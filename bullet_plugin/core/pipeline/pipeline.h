@@ -64,8 +64,10 @@ public:
     void endStart();
 
     const DeviceReport& deviceReport() const;
-    // Returns the open device's name, also while the host runs the steps; "host" without one.
-    std::string deviceName() const;
+    // Returns the open device, also while the host runs the steps; without one the record's name is "host".
+    DeviceInfo openDevice() const;
+    // Returns the time for which kernels of the open device have been compiled so far, ms.
+    double compileMs() const;
 
     // Add a mesh; both copy their input. Topology is fixed until remove(). They return kNoMesh, with nothing added,
     // for a mesh with an index out of range; lastError() names it. The next step costs more in proportion to the

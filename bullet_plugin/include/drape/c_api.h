@@ -211,7 +211,7 @@ typedef struct DrapeStatistics
     size_t m_clothPairsMeeting;     // pairs of cloth that are not guarded
     int m_skipped;                  // 1 if there was nothing to do
     int m_onHost;                   // 1 if the host back end ran the step
-    double m_collisionMs;           // all of Drape's time
+    double m_collisionMs;           // Drape's time but for the prediction and the normals
     double m_solverMs;              // its part that follows the detection
     double m_callsMs;               // all of the soft-body solver's time, with Bullet's part
 } DrapeStatistics;
@@ -343,6 +343,12 @@ DRAPE_C_FUNCTION DrapeResult drapeWorldSetPose(DrapeWorld* world, int obstacle, 
 // for an unknown index, another number of vertices, or values that are not finite.
 DRAPE_C_FUNCTION DrapeResult drapeWorldSetVertices(DrapeWorld* world, int obstacle, const float* positions,
                                                    size_t vertexCount, int teleport);
+
+// Leaves `count` triangles of an obstacle out of collision, and no others: doors and holes. triangles: their indices in
+// the description; with none all collide again. Errors: DRAPE_BAD_INPUT for an unknown obstacle or triangle, or a
+// missing array; DRAPE_OUT_OF_MEMORY.
+DRAPE_C_FUNCTION DrapeResult drapeWorldLeaveOutTriangles(DrapeWorld* world, int obstacle, const int32_t* triangles,
+                                                         size_t count);
 
 // Pins `count` nodes of a cloth (pinned 1), or lets them go with the masses that they had (0). Errors:
 // DRAPE_BAD_INPUT for an unknown cloth or node.

@@ -66,6 +66,10 @@ public:
     // vertex in the obstacle's own frame, m. `vertexCount` must be the obstacle's. teleport: as in setPose().
     bool setVertices(int obstacle, const float* positions, std::size_t vertexCount, bool teleport = false);
 
+    // Leaves these triangles of an obstacle out of collision, and no others: doors and holes. triangles: `count`
+    // indices in its description. No index brings all of them back.
+    bool leaveOutTriangles(int obstacle, const std::int32_t* triangles, std::size_t count);
+
     // Pins nodes, or lets them go with the masses that they had. A pinned node stays where it is, or goes where
     // setPositions() puts it.
     bool setPinned(int cloth, const std::int32_t* nodes, std::size_t count, bool pinned);

@@ -1,4 +1,5 @@
-// Bullet's soft body collision configuration with Drape's algorithm for cloth against triangle meshes.
+// Bullet's soft body collision configuration with Drape's algorithm for cloth against triangle meshes, planes, height
+// fields and convex shapes.
 //
 // Use it in place of btSoftBodyRigidBodyCollisionConfiguration when the dispatcher is built. Drape decides at every
 // step which pairs it handles; Plugin::whyStock() names the reason for the others, which Bullet's own algorithm
@@ -25,7 +26,11 @@ public:
     explicit CollisionConfiguration(
         Plugin& plugin, const btDefaultCollisionConstructionInfo& info = btDefaultCollisionConstructionInfo());
 
-    // Returns Drape's algorithm for a soft body and a concave mesh, Bullet's own otherwise. Called by Bullet.
+    // Ends after the dispatcher, as Bullet demands.
+    ~CollisionConfiguration() override;
+
+    // Returns Drape's algorithm for a soft body and a shape that Drape may handle, Bullet's own otherwise. Called by
+    // Bullet.
     btCollisionAlgorithmCreateFunc* getCollisionAlgorithmCreateFunc(int proxyType0, int proxyType1) override;
 
 private:

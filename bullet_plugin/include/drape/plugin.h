@@ -142,9 +142,10 @@ public:
     std::string whyBulletSolves(const btSoftBody& body) const;
 
     // Lists problems of a world, one line each; empty if there are none. Checks the world's solver and dispatcher,
-    // pairs left to Bullet, cloth that intersects a mesh or lies inside one, nodes that are not finite, margins out of
-    // proportion, and the last step's status. Fetches the nodes of kept bodies. For development: takes milliseconds to
-    // seconds. Call between steps. "out of memory" if memory runs out.
+    // pairs and links left to Bullet other than by Settings::m_solver, cloth that intersects a mesh or lies inside one,
+    // nodes that are not finite, and margins out of proportion. Adds what the last steps found: cloth that meets cloth,
+    // with counts, obstacles that teleport in step after step, and the status. Fetches the nodes of kept bodies. For
+    // development: takes milliseconds to seconds. Call between steps. "out of memory" if memory runs out.
     std::string diagnose(const btCollisionWorld& world) const;
 
     // Brings a soft body or an obstacle's meshes to the device, so that the first step near it does not pay for this.
@@ -207,11 +208,12 @@ public:
 
     // Lets a soft body collide with itself, and with the other bodies for which this is on, as far as Bullet's filters
     // let the two collide. Off by default. thickness: m, at which layers rest on each other; 0 means twice the body's
-    // margin. Bodies of two thicknesses keep their mean. Features that are nearer when this is switched on keep half
-    // of that distance. Friction is the greater kDF of the two. Cloth that does not intersect itself or another
-    // body never does so at the end of a step; StepStatistics::m_clothPairsMeeting counts exceptions. The links of
-    // these bodies are solved on the host. Cloth that starts intersecting is pushed apart a little in every step, at a
-    // tenth of the thickness at most, and kept apart as it comes apart; clothPairs() lists it. If memory runs out,
+    // margin, and so does a negative one, with a line of Settings::m_log. Another line says if it is more than twice
+    // the body's mean edge. Bodies of two thicknesses keep their mean. Features that are nearer when this is switched
+    // on keep half of that distance. Friction is the greater kDF of the two. Cloth that does not intersect itself or
+    // another body never does so at the end of a step; StepStatistics::m_clothPairsMeeting counts exceptions. The links
+    // of these bodies are solved on the host. Cloth that starts intersecting is pushed apart a little in every step, at
+    // a fifth of the thickness at most, and kept apart as it comes apart; clothPairs() lists it. If memory runs out,
     // nothing changes. The body is remembered by its address until this is switched off. A GPU's kernels for it are
     // built by the next prepare() of such a body, or else in its first step, which then takes seconds at the first use
     // of a driver.
@@ -221,16 +223,18 @@ public:
     void setSelfCollision(const btSoftBody& body, bool collides, double thickness = 0);
 
     // Makes only the front of a mesh shape solid: the side from which its triangles run counter-clockwise. Cloth behind
-    // it may come out. Off by default. A mirrored mesh keeps its front. The shape is remembered by its address until
-    // this is switched off. If memory runs out, nothing changes, and cloth stands still in the next step with
-    // kStepOutOfMemory.
+    // it may come out. Off by default. Planes, height fields and convex shapes count as meshes; for other shapes, such
+    // as a compound instead of its children, Settings::m_log gets a line, and nothing changes. A mirrored mesh keeps
+    // its front. The shape is remembered by its address until this is switched off. If memory runs out, nothing
+    // changes, and cloth stands still in the next step with kStepOutOfMemory.
     void setOneSided(const btCollisionShape* shape, bool oneSided);
 
     // Leaves out of collision those triangles of a mesh or height field for which the filter returns false: doors and
     // holes. It is called for each triangle that is read, in the next step and whenever the shape changes; call
     // obstacleChanged() if its answers change. Only Drape's own contacts heed it. A scaled shape has the filter of its
-    // child if it has none. Null removes it. It must not throw. The shape is remembered by its address. If memory runs
-    // out, nothing changes, and cloth stands still in the next step with kStepOutOfMemory.
+    // child if it has none. Other shapes have no such triangles: Settings::m_log gets a line, and nothing is left out.
+    // Null removes it. It must not throw. The shape is remembered by its address. If memory runs out, nothing changes,
+    // and cloth stands still in the next step with kStepOutOfMemory.
     void setTriangleFilter(const btCollisionShape* shape, TriangleFilter filter);
 
     // Returns the state shared with Drape's other classes; not for apps.

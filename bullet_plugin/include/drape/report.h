@@ -153,7 +153,8 @@ struct StepParts
     double m_narrowMs = 0;
     // Time for sorting contacts by body and for ending paths at the first impact, without waits and uploads.
     double m_writeMs = 0;
-    // Time for reading links and nodes of bodies whose links Drape solves.
+    // Time for reading links and nodes of bodies whose links Drape solves, and for finding contacts of cloth with
+    // cloth.
     double m_readMs = 0;
     // Time for links in substeps, contact sweeps and motion limits. The sweeps between Bullet's iterations count, too.
     double m_solveMs = 0;
@@ -166,11 +167,12 @@ struct StepParts
     // Time of Bullet's normals of faces and nodes.
     double m_normalsMs = 0;
 
-    // Returns all of Drape's time in the solver's predictMotion and solveConstraints, without Bullet's.
+    // Returns the time for finding and solving contacts, for links, and for the guards: all of Drape's time but the
+    // prediction and the normals.
     double collisionMs() const { return m_mirrorMs + m_uploadMs + m_waitMs + m_writeMs + solverMs(); }
     // Returns the part of collisionMs() that follows the detection.
     double solverMs() const { return m_readMs + m_solveMs + m_writeBackMs + m_checkMs; }
-    // Returns the time of the solver's calls, with Bullet's part.
+    // Returns the time of the solver's calls: collisionMs(), the prediction, the normals, and Bullet's part.
     double callsMs() const { return collisionMs() + m_predictMs + m_bulletMs + m_normalsMs; }
 };
 

@@ -147,11 +147,13 @@ struct Settings
     std::string m_cacheFolder;
 
     // Receives one line without a line feed about what no return value reports. Setup: a device that is missing or
-    // failed, kernels that were compiled (with the time), a world without the solver or the collision configuration,
-    // two threads in one plugin. The app: exceptions of m_parallelFor and of a contact listener. Cloth: left out of a
-    // step, intersecting at its start (with counts), a margin that is negative or as large as the mesh, a thickness out
-    // of proportion to the cloth's edges. Called once while the problem lasts, on a thread that calls the plugin.
-    // nullptr means no lines. Exceptions from it are dropped.
+    // failed, a world without the solver or the collision configuration, two threads in one plugin. Kernels that were
+    // compiled for more than half a second, with the time; three on PoCL, which hides its cache. The app: exceptions of
+    // m_parallelFor and of a contact listener; calls without effect. Cloth: left out of a step, nodes that are not
+    // finite, intersections at a step's start. Margins: negative, as large as the mesh, or a thickness out of
+    // proportion to the edges of cloth or mesh. Obstacles: put elsewhere in step after step. Called once while the
+    // problem lasts, on a thread that calls the plugin. nullptr means no lines. Exceptions from it are dropped. By
+    // default lines go to standard error.
     std::function<void(const char*)> m_log = logToStandardError;
 };
 }  // namespace drape
