@@ -96,11 +96,28 @@ TEST(StoppedNodes, KeepTheirMomentaAndGainNoEnergy)
     Random random(6);
     std::vector<StoppedNode> nodes = randomNodes(random, 7);
     const Momenta before = momentaOf(nodes);
-    slowDown(nodes);
+    slowDown(nodes, ImpactMotion::Shares);
     const Momenta after = momentaOf(nodes);
     expectNear(after.m_linear, before.m_linear, 1e-10);
     expectNear(after.m_angular, before.m_angular, 1e-3);
     EXPECT_LT(after.m_energy, before.m_energy);
+}
+
+TEST(StoppedNodes, ThatMoveAsOneKeepTheirMomentum)
+{
+    Random random(7);
+    const std::vector<StoppedNode> before = randomNodes(random, 7);
+    for (const ImpactMotion motion : {ImpactMotion::Common, ImpactMotion::Straight})
+    {
+        std::vector<StoppedNode> nodes = before;
+        EXPECT_TRUE(slowDown(nodes, motion));
+        expectNear(momentaOf(nodes).m_linear, momentaOf(before).m_linear, 1e-10);
+        EXPECT_LT(momentaOf(nodes).m_energy, momentaOf(before).m_energy);
+        if (motion == ImpactMotion::Straight)
+            expectNear(nodes[0].m_velocity, nodes[1].m_velocity, 1e-12);
+        else
+            expectNear(momentaOf(nodes).m_angular, momentaOf(before).m_angular, 1e-3);
+    }
 }
 
 TEST(StoppedNodes, BesideHeldNodesTheyLoseTheirShare)
@@ -109,7 +126,7 @@ TEST(StoppedNodes, BesideHeldNodesTheyLoseTheirShare)
     std::vector<StoppedNode> nodes = randomNodes(random, 3);
     nodes[4].m_mass = 0;
     const std::vector<StoppedNode> before = nodes;
-    slowDown(nodes);
+    EXPECT_FALSE(slowDown(nodes, ImpactMotion::Common));
     for (std::size_t i = 0; i < nodes.size(); ++i)
         expectNear(nodes[i].m_velocity, before[i].m_share * before[i].m_velocity, 0);
 }
@@ -121,8 +138,8 @@ TEST(StoppedNodes, ImpactsAreApart)
     std::vector<StoppedNode> others = randomNodes(random, 2);
     nodes.insert(nodes.end(), others.begin(), others.end());
     nodes.push_back({{0, 0, 0}, {1, 2, 3}, 1, 1, NodeGroups::kNone});
-    slowDown(nodes);
-    slowDown(alone);
+    slowDown(nodes, ImpactMotion::Shares);
+    slowDown(alone, ImpactMotion::Shares);
     for (std::size_t i = 0; i < alone.size(); ++i)
         expectNear(nodes[i].m_velocity, alone[i].m_velocity, 0);
     expectNear(nodes.back().m_velocity, {1, 2, 3}, 0);

@@ -33,7 +33,7 @@ std::vector<float> moved(std::vector<float> positions, const ContourPush& push)
 TEST(ContourPush, ACornerWithdrawsAndTheFaceMovesTheOtherWay)
 {
     ContourPush push;
-    push.compute(kPair, pokedThrough(0.1f).data(), std::vector<unsigned char>(6, 0), 0.01);
+    push.compute(kPair, pokedThrough(0.1f).data(), std::vector<unsigned char>(6, 0), std::vector<double>(6, 0.01));
     ASSERT_EQ(push.displacements().size(), 18u);
     EXPECT_GT(wayOf(push, 5, 1), 0.004);
     for (const std::size_t node : {0, 1, 2})
@@ -49,7 +49,7 @@ TEST(ContourPush, RepeatedPushesBringTheTrianglesApart)
     int steps = 0;
     for (; steps < 100; ++steps)
     {
-        push.compute(kPair, positions.data(), std::vector<unsigned char>(6, 0), 0.01);
+        push.compute(kPair, positions.data(), std::vector<unsigned char>(6, 0), std::vector<double>(6, 0.01));
         positions = moved(positions, push);
         if (positions[16] > positions[1]) break;
     }
@@ -59,7 +59,7 @@ TEST(ContourPush, RepeatedPushesBringTheTrianglesApart)
 TEST(ContourPush, HeldNodesStay)
 {
     ContourPush push;
-    push.compute(kPair, pokedThrough(0.1f).data(), {1, 1, 1, 0, 0, 0}, 0.01);
+    push.compute(kPair, pokedThrough(0.1f).data(), {1, 1, 1, 0, 0, 0}, std::vector<double>(6, 0.01));
     for (const std::size_t node : {0, 1, 2})
         for (const std::size_t axis : {0, 1, 2})
             EXPECT_EQ(wayOf(push, node, axis), 0);
@@ -70,14 +70,14 @@ TEST(ContourPush, PairsWithoutAnIntersectionOrAreaMoveNothing)
 {
     std::vector<float> flat = pokedThrough(-0.1f);
     ContourPush push;
-    push.compute(kPair, flat.data(), std::vector<unsigned char>(6, 0), 0.01);
+    push.compute(kPair, flat.data(), std::vector<unsigned char>(6, 0), std::vector<double>(6, 0.01));
     for (const double way : push.displacements())
         EXPECT_EQ(way, 0);
     std::fill(flat.begin() + 9, flat.end(), 0.0f);
-    push.compute(kPair, flat.data(), std::vector<unsigned char>(6, 0), 0.01);
+    push.compute(kPair, flat.data(), std::vector<unsigned char>(6, 0), std::vector<double>(6, 0.01));
     for (const double way : push.displacements())
         EXPECT_EQ(way, 0);
-    push.compute({}, flat.data(), std::vector<unsigned char>(6, 0), 0.01);
+    push.compute({}, flat.data(), std::vector<unsigned char>(6, 0), std::vector<double>(6, 0.01));
     EXPECT_TRUE(push.displacements().empty());
 }
 }  // namespace drape::test

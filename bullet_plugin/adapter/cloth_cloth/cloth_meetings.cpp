@@ -16,6 +16,11 @@ namespace
 // Greatest way in a step of a node whose triangles intersect others, as a share of the thickness.
 constexpr float kPushedShare = 0.2f;
 
+// Maximum times that the guard is applied to let nodes that stopped each other go on together.
+constexpr int kMostTurns = 8;
+// Turns after which they move as one.
+constexpr int kTurnsWithShares = 2;
+
 btVector3 vectorOf(const double v[3])
 {
     return btVector3(btScalar(v[0]), btScalar(v[1]), btScalar(v[2]));
@@ -82,6 +87,7 @@ void ClothMeetings::begin(const Bodies& bodies, const std::function<bool(const b
 {
     m_members.clear();
     m_state.m_clothPairs.clear();
+    ++m_step;
     bool anyStepped = false;
     for (int i = 0; i < bodies.size(); ++i)
     {
@@ -118,6 +124,12 @@ void ClothMeetings::noteFilters()
         m_isClean = m_isClean && hash.value() == member.m_self->m_filters;
         member.m_self->m_filters = hash.value();
     }
+    StateHash answers;
+    for (std::size_t i = 0; i < m_members.size() && hasOwnFilter(*m_members[i].m_body); ++i)
+        for (std::size_t k = 0; k < i; ++k)
+            answers.add(std::uint64_t(canMeet(i, k)));
+    m_isClean = m_isClean && answers.value() == m_answers;
+    m_answers = answers.value();
 }
 
 // Returns whether two members collide: as they ask for it, and as Bullet's filters let them.
@@ -181,8 +193,9 @@ void ClothMeetings::addRow(const Contact& found, std::size_t index)
 bool ClothMeetings::startsAtLastEnd(std::size_t member) const
 {
     const std::size_t first = m_set.firstNode(member), count = m_set.firstNode(member + 1) - first;
-    const std::vector<float>& ends = m_members[member].m_self->m_ends;
-    if (ends.size() != 3 * count) return false;
+    const SelfColliding& self = *m_members[member].m_self;
+    const std::vector<float>& ends = self.m_ends;
+    if (ends.size() != 3 * count || self.m_solver != this || self.m_step + 1 != m_step) return false;
     for (std::size_t i = 0; i < 3 * count; ++i)
         if (!m_isHeld[first + i / 3] && m_set.start()[3 * first + i] != ends[i]) return false;
     return true;
@@ -358,11 +371,14 @@ bool ClothMeetings::hasRows(const SolverNodes& nodes) const
 // Moves the ends of triangles that started intersecting, once in a step. Their velocities stay.
 void ClothMeetings::pushApart()
 {
-    float least = m_set.thickness();
-    for (std::size_t i = 0; i < m_meeting.size(); i += 6)
-        least = std::min(least, m_set.thicknessOf(m_set.memberOf(m_meeting[i]), m_set.memberOf(m_meeting[i + 3])));
-    m_push.compute(m_wasPushed ? std::vector<std::uint32_t>() : m_meeting, m_set.start(), m_isHeld,
-                   double(kPushedShare * least));
+    std::vector<double> most(m_set.nodeCount(), double(kPushedShare * m_set.thickness()));
+    for (std::size_t i = 0; i < m_meeting.size(); ++i)
+    {
+        const std::size_t pair = i - i % 6;
+        const float thickness = m_set.thicknessOf(m_set.memberOf(m_meeting[pair]), m_set.memberOf(m_meeting[pair + 3]));
+        most[m_meeting[i]] = std::min(most[m_meeting[i]], double(kPushedShare * thickness));
+    }
+    m_push.compute(m_wasPushed ? std::vector<std::uint32_t>() : m_meeting, m_set.start(), m_isHeld, most);
     m_wasPushed = true;
     for (std::size_t i = 0; i < m_push.displacements().size(); ++i)
         m_set.end()[i] += float(m_push.displacements()[i]);
@@ -374,15 +390,12 @@ bool ClothMeetings::isPushed(std::size_t node) const
     return !all.empty() && (all[3 * node] != 0 || all[3 * node + 1] != 0 || all[3 * node + 2] != 0);
 }
 
-const std::vector<btSoftBody*>& ClothMeetings::guard(bool carries,
-                                                     const std::function<bool(const btSoftBody&)>& touchesFixed)
+const std::vector<btSoftBody*>& ClothMeetings::guard(bool carries, const BodySet& fixed)
 {
     m_moved.clear();
     readEnds();
     pushApart();
-    const GuardResult result = m_guard.apply(
-        m_set, m_isHeld, [this](const std::uint32_t* nodes) { return isGuarded(nodes); },
-        m_state.settings().m_candidateLimit, m_state.threads(), carries);
+    const GuardResult result = applyGuard(carries, fixed);
     m_isClean = m_meeting.empty() && result.m_startMeeting == 0 && result.m_forced == 0 && !result.m_tooMany;
     StepStatistics& statistics = m_state.m_statistics;
     statistics.m_nodesShortened += result.m_shortened;
@@ -391,10 +404,10 @@ const std::vector<btSoftBody*>& ClothMeetings::guard(bool carries,
     listFlagged();
     if (result.m_tooMany) reportUnguarded();
     keepEnds();
-    if (result.m_shortened > 0) slowDown(touchesFixed);
     const auto read = [&](Member& member, btSoftBody::Node& node, std::size_t index)
     {
-        if (!(m_guard.shares()[index] < 1) && !isPushed(index) && !m_guard.isCarried(index)) return;
+        if (!(m_guard.shares()[index] < 1) && !m_isShared[index] && !isPushed(index) && !m_guard.isCarried(index))
+            return;
         node.m_x = vectorOf(vec3Load(m_set.end(), std::uint32_t(index)));
         if (isPushed(index)) follow(*member.m_body, node, vectorOf(m_push.displacements().data() + 3 * index));
         if (m_guard.isCarried(index)) follow(*member.m_body, node, node.m_x - startOf(index));
@@ -404,13 +417,28 @@ const std::vector<btSoftBody*>& ClothMeetings::guard(bool carries,
     return m_moved;
 }
 
-// Slows nodes down that did not go their whole way.
-void ClothMeetings::slowDown(const std::function<bool(const btSoftBody&)>& touchesFixed)
+// Applies the guard, again and again while nodes that stopped each other go on with their common motion.
+GuardResult ClothMeetings::applyGuard(bool carries, const BodySet& fixed)
 {
-    std::vector<unsigned char> touches;
-    for (const Member& member : m_members)
-        touches.push_back(touchesFixed(*member.m_body));
+    m_isShared.assign(m_set.nodeCount(), 0);
     m_impacts.clear(m_set.nodeCount());
+    for (int turn = 1;; ++turn)
+    {
+        const std::vector<float> whole(m_set.end(), m_set.end() + 3 * m_set.nodeCount());
+        const GuardResult result = m_guard.apply(
+            m_set, m_isHeld, [this](const std::uint32_t* nodes) { return isGuarded(nodes); },
+            m_state.settings().m_candidateLimit, m_state.threads(), carries);
+        if (result.m_shortened == 0) return result;
+        const bool mayGoOn = turn < kMostTurns && !result.m_tooMany;
+        if (!slowDown(whole, fixed, turn > kTurnsWithShares, mayGoOn)) return result;
+    }
+}
+
+// Slows nodes down that did not go their whole way. fixed: bodies on something that takes momentum. sticks: nodes of an
+// impact have no motion of their own. mayGoOn: nodes may go on together. Returns whether they do: then the ends of all
+// ways are new, and need the guard.
+bool ClothMeetings::slowDown(const std::vector<float>& whole, const BodySet& fixed, bool sticks, bool mayGoOn)
+{
     const auto join = [this](const std::uint32_t* nodes)
     {
         for (int k = 0; k < 4; ++k)
@@ -418,22 +446,34 @@ void ClothMeetings::slowDown(const std::function<bool(const btSoftBody&)>& touch
     };
     m_guard.forStopped(join);
     m_impacts.name();
-    m_stopped.clear();
+    std::vector<StoppedNode> speeds, ways;
     const auto read = [&](const Member& member, const btSoftBody::Node& node, std::size_t index)
     {
-        const bool isFixed = touches[std::size_t(&member - m_members.data())];
-        const bool isHeld = m_isHeld[index] || m_guard.isCarried(index) || isFixed;
-        m_stopped.push_back({pointAt(m_set.end(), index), wideOf(node.m_v), isHeld ? 0 : 1 / double(node.m_im),
-                             m_guard.shares()[index], m_impacts.groupOf(index)});
+        const bool isHeld = m_isHeld[index] || !(movableInverseMass(node) > 0) || m_guard.isCarried(index) ||
+                            fixed.count(member.m_body) > 0;
+        const Vec3d start = pointAt(m_set.start(), index);
+        speeds.push_back({start, wideOf(node.m_v), isHeld ? 0 : 1 / double(node.m_im), m_guard.shares()[index],
+                          m_impacts.groupOf(index)});
+        ways.push_back(speeds.back());
+        ways.back().m_velocity = pointAt(whole.data(), index) - start;
     };
     forNodes(read);
-    drape::slowDown(m_stopped);
-    const auto write = [this](const Member&, btSoftBody::Node& node, std::size_t index)
+    drape::slowDown(speeds, sticks ? ImpactMotion::Common : ImpactMotion::Shares);
+    const bool goesOn = mayGoOn && drape::slowDown(ways, sticks ? ImpactMotion::Straight : ImpactMotion::Shares);
+    const auto write = [&](const Member&, btSoftBody::Node& node, std::size_t index)
     {
-        const StoppedNode& stopped = m_stopped[index];
-        if (stopped.m_share < 1 || stopped.m_impact != NodeGroups::kNone) node.m_v = narrowOf(stopped.m_velocity);
+        const bool isFree = speeds[index].m_impact != NodeGroups::kNone && !speeds[index].m_isHeld;
+        // Ways that others hold are stopped again in the next turn.
+        if (isFree || (!goesOn && speeds[index].m_share < 1)) node.m_v = narrowOf(speeds[index].m_velocity);
+        if (!goesOn) return;
+        float* end = m_set.end() + 3 * index;
+        std::copy_n(whole.data() + 3 * index, 3, end);
+        if (!isFree) return;
+        writePosition(narrowOf(ways[index].m_place + ways[index].m_velocity), end);
+        m_isShared[index] = 1;
     };
     forNodes(write);
+    return goesOn;
 }
 
 // Lists the pairs of the last guard() that are not guarded.
@@ -510,8 +550,12 @@ void ClothMeetings::readEnds()
 void ClothMeetings::keepEnds()
 {
     for (std::size_t i = 0; i < m_members.size(); ++i)
-        m_members[i].m_self->m_ends.assign(m_set.end() + 3 * m_set.firstNode(i),
-                                           m_set.end() + 3 * m_set.firstNode(i + 1));
+    {
+        SelfColliding& self = *m_members[i].m_self;
+        self.m_ends.assign(m_set.end() + 3 * m_set.firstNode(i), m_set.end() + 3 * m_set.firstNode(i + 1));
+        self.m_solver = this;
+        self.m_step = m_step;
+    }
 }
 
 // Counts and lists the triangles that intersect where the step ends: cloth stood still, but held nodes moved.
@@ -519,6 +563,8 @@ void ClothMeetings::reportUnguarded()
 {
     m_isClean = false;
     const std::vector<float> starts(m_set.start(), m_set.start() + 3 * m_set.nodeCount());
+    std::vector<std::uint32_t> startMeeting;
+    startMeeting.swap(m_meeting);
     std::copy(m_set.end(), m_set.end() + 3 * m_set.nodeCount(), m_set.start());
     listMeeting();
     std::copy(starts.begin(), starts.end(), m_set.start());
@@ -527,5 +573,6 @@ void ClothMeetings::reportUnguarded()
     statistics.m_status |= kStepMotionHeldBack;
     if (statistics.m_clothPairsMeeting > 0) statistics.m_status |= kStepClothsMeet;
     listFlagged();
+    m_meeting.swap(startMeeting);
 }
 }  // namespace drape

@@ -40,9 +40,9 @@ public:
     bool hasRows(const SolverNodes& nodes) const;
     // Brings triangles that started the step intersecting apart a little, in the step's first call. Then shortens the
     // way of Bullet's nodes from their starts (m_q) to where they are (m_x). Lists the bodies with nodes that were
-    // moved. Adds to the statistics. carries: held nodes carry other cloth along. touchesFixed: whether a body touches
-    // something that takes the momentum of nodes that stop.
-    const std::vector<btSoftBody*>& guard(bool carries, const std::function<bool(const btSoftBody&)>& touchesFixed);
+    // moved. Adds to the statistics. carries: held nodes carry other cloth along. fixed: bodies that touch something
+    // that takes the momentum of nodes that stop.
+    const std::vector<btSoftBody*>& guard(bool carries, const BodySet& fixed);
     // Adds the contacts of find() with what the solver's rows gave.
     void record(ContactRecords& records) const;
     // Adds the members with features near those of bodies of the set, by the last guard().
@@ -84,7 +84,8 @@ private:
     void listMeeting();
     ClothPairInfo pairAt(std::size_t first) const;
     bool isTangled(const std::uint32_t nodes[4]) const;
-    void slowDown(const std::function<bool(const btSoftBody&)>& touchesFixed);
+    GuardResult applyGuard(bool carries, const BodySet& fixed);
+    bool slowDown(const std::vector<float>& whole, const BodySet& fixed, bool sticks, bool mayGoOn);
     bool isGuarded(const std::uint32_t nodes[4]) const;
     void pushApart();
     bool isPushed(std::size_t node) const;
@@ -97,13 +98,15 @@ private:
     ClothRows m_rows;
     ClothGuard m_guard;
     ContourPush m_push;
-    bool m_wasPushed = false;              // in this step
-    std::vector<unsigned char> m_isHeld;   // by node of the set: it goes where Bullet or the app puts it
-    bool m_isClean = false;                // no triangles met where the last step left the members
-    std::vector<std::uint32_t> m_meeting;  // see ClothSet::findMeeting()
-    NodeGroups m_tangles;                  // triangles that intersect, directly or through others
-    NodeGroups m_impacts;                  // nodes that stopped each other in the last guard()
-    std::vector<StoppedNode> m_stopped;    // see slowDown()
-    std::vector<btSoftBody*> m_moved;      // by the last guard()
+    bool m_wasPushed = false;             // in this step
+    std::vector<unsigned char> m_isHeld;  // by node of the set: it goes where Bullet or the app puts it
+    std::uint64_t m_step = 0;
+    std::uint64_t m_answers = 0;            // hash of what the world's own filter answers
+    bool m_isClean = false;                 // no triangles met where the last step left the members
+    std::vector<std::uint32_t> m_meeting;   // see ClothSet::findMeeting()
+    NodeGroups m_tangles;                   // triangles that intersect, directly or through others
+    NodeGroups m_impacts;                   // nodes that stopped each other in the last guard()
+    std::vector<unsigned char> m_isShared;  // by node: it goes on with others that it stopped
+    std::vector<btSoftBody*> m_moved;       // by the last guard()
 };
 }  // namespace drape

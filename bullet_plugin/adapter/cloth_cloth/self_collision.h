@@ -21,10 +21,11 @@ struct SelfColliding
     int m_proxy = 0;            // identifies the body in its world; another one may get its address
     int m_revision = 0;         // another one, of all bodies, when m_rest changes
     std::vector<float> m_rest;  // x y z per node, m, where the nodes were when it was switched on
-    // The nodes' positions after the last step, x y z per node, m; empty if it did not have the body, or if that was
-    // put elsewhere.
+    // The nodes' positions after a step of that solver, x y z per node, m; empty if the body was put elsewhere since.
     std::vector<float> m_ends;
-    std::uint64_t m_filters = 0;  // a hash of filterHash() and the flags above in that step
+    const void* m_solver = nullptr;  // compared, never followed
+    std::uint64_t m_step = 0;        // the solver's number of the step
+    std::uint64_t m_filters = 0;     // a hash of filterHash() and the flags above in that step
 };
 
 class SelfCollision

@@ -34,6 +34,12 @@ bool filtersLetMeet(const btSoftBody& first, const btSoftBody& second)
            (q->m_collisionFilterGroup & p->m_collisionFilterMask) != 0;
 }
 
+bool hasOwnFilter(const btSoftBody& body)
+{
+    btOverlappingPairCache* const pairs = pairCacheOf(body);
+    return pairs && pairs->getOverlapFilterCallback();
+}
+
 std::uint64_t filterHash(const btSoftBody& body)
 {
     StateHash hash;
@@ -46,7 +52,6 @@ std::uint64_t filterHash(const btSoftBody& body)
         hash.add(body.m_collisionDisabledObjects[i]);
     for (int i = 0; i < body.getNumObjectsWithoutCollision(); ++i)
         hash.add(mutableBody(body).getObjectWithoutCollision(i));
-    if (btOverlappingPairCache* const pairs = pairCacheOf(body)) hash.add(pairs->getOverlapFilterCallback());
     return hash.value();
 }
 }  // namespace drape

@@ -11,6 +11,9 @@ namespace drape
 // filter, contact response, and the lists of objects that a body ignores. The order of the two does not matter.
 bool filtersLetMeet(const btSoftBody& first, const btSoftBody& second);
 
-// Returns a number that changes with what filtersLetMeet() reads of a body.
+// Returns whether the body's world has a filter of its own, whose answers may change.
+bool hasOwnFilter(const btSoftBody& body);
+
+// Returns a number that changes with what filtersLetMeet() reads of a body, but for such a filter.
 std::uint64_t filterHash(const btSoftBody& body);
 }  // namespace drape

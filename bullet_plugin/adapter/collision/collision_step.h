@@ -55,8 +55,9 @@ public:
     void watch(const btSoftBody& body);
     // Detects along the bodies' real paths, which end at their current positions.
     void detectRealPaths();
-    // Returns whether the body touches an obstacle that does not yield, after the last detection.
-    bool touchesFixed(const BodyContacts& body) const;
+    // Lists the bodies with contacts within reach of obstacles that do not yield. Before checkOffPath(), which forgets
+    // contacts.
+    BodySet listFixed() const;
     // Adds the bodies that share dynamic obstacles with bodies of the set.
     void addSharers(BodySet& bodies) const;
     // Adds the set's bodies, and the dynamic obstacles beside them, to a group that is to be held.
@@ -71,6 +72,9 @@ public:
     // Reports cloth that ends the step through an obstacle whose vertices moved in it. Along such a motion faces start
     // where their nodes are carried, so that contacts may miss what reaches the middle of a large face.
     void reportMeetingDeformed();
+    // Reports cloth that starts or ends the step on a surface and ends it through that: no contact could tell on which
+    // side it belongs.
+    void reportLeftSurfaces();
     // Ends a step, after the solver: removes from velocities what pushes gave, and records the nodes' positions.
     void end();
 
@@ -128,11 +132,12 @@ private:
     void receive(const ContactList& contacts, Detection detection);
     std::vector<SolverContact> impactsOf(const BodyContacts& body, std::vector<const Contact*>* found = nullptr) const;
     bool isJammed(const BodyContacts& body) const;
+    bool touchesFixed(const BodyContacts& body) const;
     void endHold(const BodySet& bodies);
     static bool endsBehind(const BodyContacts& body);
     bool holdJammed();
     void reportPassed();
-    bool startsOnSurface(const BodyContacts& body) const;
+    bool meetsSurface(const BodyContacts& body) const;
     void tellPassed(std::size_t body);
     std::vector<SolverContact> dynamicImpactsOf(const BodyContacts& body) const;
     bool cutAtImpactsOf(BodyContacts& body, Cut cut, std::vector<Vec3>* slides);

@@ -289,6 +289,7 @@ void CollisionStep::addSharers(BodySet& bodies) const
     }
 }
 
+// Returns whether a body of the last detection has contacts within reach of an obstacle that does not yield.
 bool CollisionStep::touchesFixed(const BodyContacts& body) const
 {
     if (!body.m_pushes.empty()) return true;
@@ -296,6 +297,14 @@ bool CollisionStep::touchesFixed(const BodyContacts& body) const
         for (std::uint32_t i = 0; i < feature.m_count; ++i)
             if (!dynamicOf(m_state.pipeline().view(feature.m_contacts[i]).m_obstacle)) return true;
     return false;
+}
+
+BodySet CollisionStep::listFixed() const
+{
+    BodySet fixed;
+    for (const BodyContacts& body : m_bodies)
+        if (touchesFixed(body)) fixed.insert(body.m_body);
+    return fixed;
 }
 
 void CollisionStep::addTo(HeldGroup& group, const BodySet& bodies)
@@ -366,14 +375,18 @@ void CollisionStep::reportPassed()
     }
 }
 
-// Returns whether a feature starts the step on a surface. It may leave it to either side: no contact can tell which is
-// right.
-bool CollisionStep::startsOnSurface(const BodyContacts& body) const
+// Returns whether a feature starts or ends the step on a surface. It may leave that to either side: no contact can tell
+// which is right.
+bool CollisionStep::meetsSurface(const BodyContacts& body) const
 {
     const float most = kOnSurface * body.m_contacts.m_leastThickness;
     for (const FeatureContacts& feature : body.m_contacts.m_features)
         for (std::uint32_t i = 0; i < feature.m_count; ++i)
-            if (std::fabs(feature.m_contacts[i].m_gap0) < most && !anyHeld(body.nodes(), feature.nodes())) return true;
+        {
+            const Contact& contact = feature.m_contacts[i];
+            const float least = std::min(std::fabs(contact.m_gap0), std::fabs(contact.m_gap1));
+            if (least < most && !anyHeld(body.nodes(), feature.nodes())) return true;
+        }
     return false;
 }
 

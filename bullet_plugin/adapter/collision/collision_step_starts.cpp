@@ -218,6 +218,16 @@ void CollisionStep::reportInvalid(const btSoftBody& body)
     m_state.m_statistics.m_invalidNodes += count;
 }
 
+void CollisionStep::reportLeftSurfaces()
+{
+    for (const Pair& pair : m_pairs)
+    {
+        const std::size_t body = m_byCloth.at(pair.m_cloth);
+        if (pair.m_carriedStarts || m_bodies[body].m_leftOut || !meetsSurface(m_bodies[body])) continue;
+        if (m_starts.endsMeeting(pair.m_start)) tellPassed(body);
+    }
+}
+
 void CollisionStep::end()
 {
     for (const BodyContacts& body : m_bodies)
@@ -234,7 +244,6 @@ void CollisionStep::end()
     for (std::size_t i = 0; i < m_mirrors.size(); ++i)
     {
         if (!m_bodies[i].m_isOnDevice) m_mirrors[i]->rememberEnds(m_state.threads());
-        if (startsOnSurface(m_bodies[i])) tellPassed(i);
     }
 }
 }  // namespace drape

@@ -10,6 +10,11 @@ namespace drape
 {
 namespace
 {
+bool isValid(const btVector3& start, const btSoftBody::Node& node)
+{
+    return positionIsValid(vec3Of(start)) && positionIsValid(vec3Of(node.m_v));
+}
+
 Inertia inertiaOf(const btRigidBody& body)
 {
     const btMatrix3x3 tensor = body.getInvInertiaTensorWorld().inverse();
@@ -30,8 +35,8 @@ void HeldGroup::add(btRigidBody& body, const btTransform& start)
     if (std::any_of(m_rigid.begin(), m_rigid.end(), isThere)) return;
     m_rigid.push_back({&body, start});
     const btVector3 free(1, 1, 1), &inverse = body.getInvInertiaDiagLocal();
-    const bool turns = inverse.x() > 0 && inverse.y() > 0 && inverse.z() > 0;
-    m_rests = m_rests || !turns || body.getLinearFactor() != free || body.getAngularFactor() != free;
+    m_rests = m_rests || body.getLinearFactor() != free;
+    m_turns = m_turns && body.getAngularFactor() == free && inverse.x() > 0 && inverse.y() > 0 && inverse.z() > 0;
 }
 
 bool HeldGroup::hasHeldNode() const
@@ -51,20 +56,22 @@ void HeldGroup::hold() const
             for (int i = 0; i < cloth.m_body->m_nodes.size(); ++i)
             {
                 const btSoftBody::Node& node = cloth.m_body->m_nodes[i];
-                motion.add(1 / double(node.m_im), wideOf(cloth.m_startOf(std::size_t(i))), wideOf(node.m_v));
+                const btVector3 start = cloth.m_startOf(std::size_t(i));
+                if (isValid(start, node)) motion.add(1 / double(node.m_im), wideOf(start), wideOf(node.m_v));
             }
         for (const Rigid& rigid : m_rigid)
             motion.addBody(1 / double(rigid.m_body->getInvMass()), wideOf(rigid.m_start.getOrigin()),
-                           wideOf(rigid.m_body->getLinearVelocity()), inertiaOf(*rigid.m_body),
+                           wideOf(rigid.m_body->getLinearVelocity()), m_turns ? inertiaOf(*rigid.m_body) : Inertia(),
                            wideOf(rigid.m_body->getAngularVelocity()));
-        motion.compute();
+        motion.compute(m_turns);
     }
     for (const Cloth& cloth : m_cloths)
         for (int i = 0; i < cloth.m_body->m_nodes.size(); ++i)
         {
             btSoftBody::Node& node = cloth.m_body->m_nodes[i];
-            if (!(node.m_im > 0)) continue;
-            node.m_x = cloth.m_startOf(std::size_t(i));
+            const btVector3 start = cloth.m_startOf(std::size_t(i));
+            if (!(node.m_im > 0) || !isValid(start, node)) continue;
+            node.m_x = start;
             node.m_v = narrowOf(motion.velocityAt(wideOf(node.m_x)));
         }
     for (const Rigid& rigid : m_rigid)

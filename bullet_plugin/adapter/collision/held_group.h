@@ -20,9 +20,10 @@ public:
 
     // A body that is there already is not added again.
     void add(btSoftBody& body, StartOf startOf);
-    // start: the body's pose at the step's start. One that cannot move and turn freely lets all come to rest.
+    // start: the body's pose at the step's start. One that is kept from moving along an axis
+    // makes all come to rest; with one that is kept from turning none turns.
     void add(btRigidBody& body, const btTransform& start);
-    // Lets all come to rest: something that nothing moves is among them. Held nodes have the same effect.
+    // Makes all come to rest: something that nothing moves is among them. Held nodes have the same effect.
     void rest() { m_rests = true; }
     // Puts all free nodes and rigid bodies back, and gives them the velocities.
     void hold() const;
@@ -43,6 +44,6 @@ private:
 
     std::vector<Cloth> m_cloths;
     std::vector<Rigid> m_rigid;
-    bool m_rests = false;
+    bool m_rests = false, m_turns = true;
 };
 }  // namespace drape

@@ -247,7 +247,7 @@ bool PairStarts::endsMeeting(const StartingPair& pair)
     };
     m_faces.erase(std::remove_if(m_faces.begin(), m_faces.end(), isHeld), m_faces.end());
     findPlaces(pair, true, PathEnd::End);
-    return findMeeting(pair, pair.m_obstacle->moveBefore()) > 0;
+    return findMeeting(pair, pair.m_obstacle->before() ? pair.m_obstacle->moveBefore() : *probeOf(pair)) > 0;
 }
 
 void PairStarts::check(const StartingPair& pair, const std::vector<int>& jumped, BodyContacts& body)

@@ -47,7 +47,7 @@ public:
     // intersects and can be separated, adds the necessary pushes to the body. Reads Bullet's nodes only.
     void check(const StartingPair& pair, const std::vector<int>& jumped, BodyContacts& body);
     // Returns whether a pair that began the step apart ends it with a face, none of whose nodes are fixed, through the
-    // obstacle. Only for obstacles whose vertices move in the step; ends the use of their mesh before it.
+    // obstacle. Ends the use of the mesh before the step of an obstacle whose vertices move in it.
     bool endsMeeting(const StartingPair& pair);
     // Returns whether check() will look at the pair's nodes though none has jumped.
     bool startsAnew(const StartingPair& pair) const;

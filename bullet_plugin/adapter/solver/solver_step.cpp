@@ -170,21 +170,16 @@ ClothRows* SoftBodySolver::Work::findMeetings()
 
 // Keeps cloth from meeting itself and other cloth on the way to where the solver put it, and checks bodies anew beside
 // obstacles whose nodes did not get there.
-void SoftBodySolver::Work::guardMeetings()
+void SoftBodySolver::Work::guardMeetings(const BodySet& fixed)
 {
     if (!m_meetings.any()) return;
-    const auto touchesFixed = [this](const btSoftBody& body)
-    {
-        const BodyContacts* const contacts = contactsOf(body);
-        return contacts && m_step->touchesFixed(*contacts);
-    };
     for (int round = 1;; ++round)
     {
         std::vector<const btSoftBody*> besideMesh;
-        for (const btSoftBody* body : m_meetings.guard(round <= kCarryingGuardRounds, touchesFixed))
+        for (const btSoftBody* body : m_meetings.guard(round <= kCarryingGuardRounds, fixed))
             if (contactsOf(*body)) besideMesh.push_back(body);
         if (besideMesh.empty()) return;
-        if (round == kMostGuardRounds) return holdJammed(besideMesh);
+        if (round == kMostGuardRounds) return holdJammed(besideMesh, fixed);
         for (const btSoftBody* body : besideMesh)
             m_step->watch(*body);
         const std::vector<BodyContacts*> offPath = m_step->checkOffPath();
@@ -193,7 +188,7 @@ void SoftBodySolver::Work::guardMeetings()
 }
 
 // Holds bodies that guard and obstacles leave no room, with the cloth and the dynamic obstacles near them.
-void SoftBodySolver::Work::holdJammed(const std::vector<const btSoftBody*>& jammed)
+void SoftBodySolver::Work::holdJammed(const std::vector<const btSoftBody*>& jammed, const BodySet& fixed)
 {
     BodySet held;
     for (const btSoftBody* body : jammed)
@@ -209,6 +204,8 @@ void SoftBodySolver::Work::holdJammed(const std::vector<const btSoftBody*>& jamm
         HeldGroup group;
         m_step->addTo(group, bodies);
         m_meetings.addTo(group, bodies);
+        for (const btSoftBody* one : bodies)
+            if (fixed.count(one) > 0) group.rest();
         group.hold();
         held.insert(bodies.begin(), bodies.end());
     }
@@ -342,8 +339,10 @@ void SoftBodySolver::Work::closeOffPath(const std::vector<BodyContacts*>& bodies
 void SoftBodySolver::Work::checkPaths(CollisionStep& step)
 {
     BT_PROFILE("Drape check");
+    const BodySet fixed = m_meetings.any() ? step.listFixed() : BodySet();
     closeOffPath(step.checkOffPath());
-    guardMeetings();
+    guardMeetings(fixed);
+    step.reportLeftSurfaces();
     step.reportMeetingDeformed();
     step.end();
 }

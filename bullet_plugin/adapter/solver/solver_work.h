@@ -96,8 +96,8 @@ struct SoftBodySolver::Work
     ClothRows* findMeetings();
     void recordSolved();
     std::vector<ContactPush> closingPushes();
-    void guardMeetings();
-    void holdJammed(const std::vector<const btSoftBody*>& jammed);
+    void guardMeetings(const BodySet& fixed);
+    void holdJammed(const std::vector<const btSoftBody*>& jammed, const BodySet& fixed);
     void checkPaths(CollisionStep& step);
     void letSleep();
 

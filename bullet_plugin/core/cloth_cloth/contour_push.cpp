@@ -40,7 +40,7 @@ bool contains(const Face& face, Vec3d normal, Vec3d at)
 }  // namespace
 
 void ContourPush::compute(const std::vector<std::uint32_t>& pairs, const float* positions,
-                          const std::vector<unsigned char>& isHeld, double most)
+                          const std::vector<unsigned char>& isHeld, const std::vector<double>& most)
 {
     m_displacements.clear();
     if (pairs.empty()) return;
@@ -85,7 +85,7 @@ void ContourPush::compute(const std::vector<std::uint32_t>& pairs, const float* 
     {
         double* const way = m_displacements.data() + 3 * node;
         const double length = std::sqrt(way[0] * way[0] + way[1] * way[1] + way[2] * way[2]);
-        const double scale = isHeld[node] ? 0 : length > 1 ? most / length : most;
+        const double scale = isHeld[node] ? 0 : most[node] / std::max(1.0, length);
         for (int axis = 0; axis < 3; ++axis)
             way[axis] *= scale;
     }

@@ -18,9 +18,10 @@ class ContourPush
 {
 public:
     // Computes the displacements for pairs of triangles that intersect: six nodes a pair, as ClothSet::findMeeting()
-    // lists them. positions: x y z per node, m. isHeld: by node; held nodes stay. most: m, by which a node is moved.
+    // lists them. positions: x y z per node, m. isHeld: by node; held nodes stay. most: by node, m, how far
+    // it is moved at most.
     void compute(const std::vector<std::uint32_t>& pairs, const float* positions,
-                 const std::vector<unsigned char>& isHeld, double most);
+                 const std::vector<unsigned char>& isHeld, const std::vector<double>& most);
     // Returns the displacements, x y z per node, m; empty if there is no pair.
     const std::vector<double>& displacements() const { return m_displacements; }
 

@@ -2,7 +2,7 @@
 //
 // Nodes of one impact keep their linear and angular momentum: their common rigid motion stays, and the rest of their
 // velocities shrinks with the way that each could go. Beside a held node, which takes the momentum, velocities shrink
-// whole. Energy never grows. Double precision; the same bits everywhere.
+// whole. The energy of these velocities never grows. Double precision; the same bits everywhere.
 #pragma once
 
 #include <cstdint>
@@ -17,10 +17,19 @@ struct StoppedNode
 {
     Vec3d m_place, m_velocity;  // m, m/s
     double m_mass;              // kg; 0 for a held node
-    double m_share;             // 0 to 1, how much of its way it went
+    double m_share;             // 0 to 1, the part of its way that it went
     std::uint32_t m_impact;     // a name that its nodes have in common; NodeGroups::kNone for none
+    bool m_isHeld = false;      // result: a node of its impact is held, or not valid
 };
 
-// Replaces the velocities.
-void slowDown(std::vector<StoppedNode>& nodes);
+// Motion that the nodes of an impact keep.
+enum class ImpactMotion
+{
+    Shares,   // their common motion, and each its share of the rest
+    Common,   // their common motion alone
+    Straight  // it without turning: angular momentum is lost
+};
+
+// Replaces the velocities. Returns whether there is an impact without held nodes.
+bool slowDown(std::vector<StoppedNode>& nodes, ImpactMotion motion);
 }  // namespace drape

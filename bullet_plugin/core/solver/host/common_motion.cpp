@@ -20,11 +20,11 @@ void CommonMotion::addBody(double mass, Vec3d place, Vec3d velocity, const Inert
     m_angularMomentum = m_angularMomentum + turning;
 }
 
-void CommonMotion::compute()
+void CommonMotion::compute(bool turns)
 {
     if (!(m_sum.mass() > 0)) return;
     m_velocity = 1 / m_sum.mass() * m_momentum;
-    m_spin = m_sum.spinOf(m_angularMomentum - cross(m_sum.centre(), m_momentum));
+    if (turns) m_spin = m_sum.spinOf(m_angularMomentum - cross(m_sum.centre(), m_momentum));
 }
 
 Vec3d CommonMotion::velocityAt(Vec3d place) const

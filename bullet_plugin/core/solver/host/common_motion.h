@@ -1,5 +1,5 @@
 // The rigid motion with the linear and angular momentum of several masses: how they move after an impact in which they
-// stick to each other. No rigid motion with that momentum has less energy than they.
+// stick to each other. No other motion of these masses with that momentum has less energy.
 //
 // Double precision. Cost: linear in the masses.
 #pragma once
@@ -15,8 +15,8 @@ public:
     void add(double mass, Vec3d place, Vec3d velocity);
     // Adds a rigid body: its inertia about its centre, kg m2, and angular velocity, rad/s.
     void addBody(double mass, Vec3d place, Vec3d velocity, const Inertia& inertia, Vec3d spin);
-    // Computes the motion of what was added.
-    void compute();
+    // Computes the motion of what was added. turns: else none turns, and angular momentum is lost.
+    void compute(bool turns = true);
     // Returns the velocity of a place, m/s.
     Vec3d velocityAt(Vec3d place) const;
     Vec3d spin() const { return m_spin; }
