@@ -417,11 +417,17 @@ const std::vector<btSoftBody*>& ClothMeetings::guard(bool carries, const BodySet
     return m_moved;
 }
 
-// Applies the guard, again and again while nodes that stopped each other go on with their common motion.
+// Applies the guard, again and again while nodes that stopped each other go on with their common motion. Only cloth
+// that nothing holds does: elsewhere it would stretch what leads to the held nodes.
 GuardResult ClothMeetings::applyGuard(bool carries, const BodySet& fixed)
 {
     m_isShared.assign(m_set.nodeCount(), 0);
     m_impacts.clear(m_set.nodeCount());
+    BodySet held = fixed;
+    for (std::size_t i = 0; i < m_members.size(); ++i)
+        if (std::count(m_isHeld.begin() + std::ptrdiff_t(m_set.firstNode(i)),
+                       m_isHeld.begin() + std::ptrdiff_t(m_set.firstNode(i + 1)), 1) > 0)
+            held.insert(m_members[i].m_body);
     for (int turn = 1;; ++turn)
     {
         const std::vector<float> whole(m_set.end(), m_set.end() + 3 * m_set.nodeCount());
@@ -430,14 +436,14 @@ GuardResult ClothMeetings::applyGuard(bool carries, const BodySet& fixed)
             m_state.settings().m_candidateLimit, m_state.threads(), carries);
         if (result.m_shortened == 0) return result;
         const bool mayGoOn = turn < kMostTurns && !result.m_tooMany;
-        if (!slowDown(whole, fixed, turn > kTurnsWithShares, mayGoOn)) return result;
+        if (!slowDown(whole, held, turn > kTurnsWithShares, mayGoOn)) return result;
     }
 }
 
-// Slows nodes down that did not go their whole way. fixed: bodies on something that takes momentum. sticks: nodes of an
-// impact have no motion of their own. mayGoOn: nodes may go on together. Returns whether they do: then the ends of all
-// ways are new, and need the guard.
-bool ClothMeetings::slowDown(const std::vector<float>& whole, const BodySet& fixed, bool sticks, bool mayGoOn)
+// Slows nodes down that did not go their whole way. held: bodies that hang or lie on what takes momentum. sticks: nodes
+// of an impact have no motion of their own. mayGoOn: nodes may go on together. Returns whether they do: then the ends
+// of all ways are new, and need the guard.
+bool ClothMeetings::slowDown(const std::vector<float>& whole, const BodySet& held, bool sticks, bool mayGoOn)
 {
     const auto join = [this](const std::uint32_t* nodes)
     {
@@ -450,7 +456,7 @@ bool ClothMeetings::slowDown(const std::vector<float>& whole, const BodySet& fix
     const auto read = [&](const Member& member, const btSoftBody::Node& node, std::size_t index)
     {
         const bool isHeld = m_isHeld[index] || !(movableInverseMass(node) > 0) || m_guard.isCarried(index) ||
-                            fixed.count(member.m_body) > 0;
+                            held.count(member.m_body) > 0;
         const Vec3d start = pointAt(m_set.start(), index);
         speeds.push_back({start, wideOf(node.m_v), isHeld ? 0 : 1 / double(node.m_im), m_guard.shares()[index],
                           m_impacts.groupOf(index)});

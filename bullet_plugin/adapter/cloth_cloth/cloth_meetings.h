@@ -85,7 +85,7 @@ private:
     ClothPairInfo pairAt(std::size_t first) const;
     bool isTangled(const std::uint32_t nodes[4]) const;
     GuardResult applyGuard(bool carries, const BodySet& fixed);
-    bool slowDown(const std::vector<float>& whole, const BodySet& fixed, bool sticks, bool mayGoOn);
+    bool slowDown(const std::vector<float>& whole, const BodySet& held, bool sticks, bool mayGoOn);
     bool isGuarded(const std::uint32_t nodes[4]) const;
     void pushApart();
     bool isPushed(std::size_t node) const;
