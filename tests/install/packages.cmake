@@ -80,7 +80,7 @@ must_have(libdrape-dev ${WORK}/libdrape-dev ${development})
 if(TOOLS)
   unpack(drape-tools "libbullet.*libc6|libc6.*libbullet")
   must_have(drape-tools ${WORK}/drape-tools usr/share/doc/drape-tools/copyright
-    usr/share/man/man1/cloth_drop\\.1(\\.gz)? usr/share/bash-completion/completions/cloth_drop
+    "usr/share/man/man1/cloth_drop\\.1(\\.gz)?" usr/share/bash-completion/completions/cloth_drop
     usr/share/drape/docs/scene\\.schema\\.json usr/share/drape/examples/scenes/table\\.json)
   must_run(${WORK}/drape-tools/usr/bin/cloth_drop)
   must_run(${WORK}/drape-tools/usr/bin/drape_check)
