@@ -153,7 +153,7 @@ TEST(NodeGroups, JoinsChains)
     groups.join(5, 6);
     groups.join(3, 3);
     groups.join(2, 6);
-    groups.name();
+    groups.nameGroups();
     EXPECT_EQ(groups.groupOf(0), NodeGroups::kNone);
     EXPECT_EQ(groups.groupOf(1), groups.groupOf(5));
     EXPECT_EQ(groups.groupOf(2), groups.groupOf(6));

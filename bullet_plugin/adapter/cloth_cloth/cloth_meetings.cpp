@@ -232,7 +232,7 @@ void ClothMeetings::nameTangles()
     m_tangles.clear(m_meeting.empty() ? 0 : m_set.nodeCount());
     for (std::size_t i = 0; i < m_meeting.size(); ++i)
         m_tangles.join(m_meeting[i - i % 6], m_meeting[i]);
-    m_tangles.name();
+    m_tangles.nameGroups();
 }
 
 // Lists the triangles that intersect, of bodies that may meet.
@@ -451,7 +451,7 @@ bool ClothMeetings::slowDown(const std::vector<float>& whole, const BodySet& hel
             m_impacts.join(nodes[0], nodes[k]);
     };
     m_guard.forStopped(join);
-    m_impacts.name();
+    m_impacts.nameGroups();
     std::vector<StoppedNode> speeds, ways;
     const auto read = [&](const Member& member, const btSoftBody::Node& node, std::size_t index)
     {

@@ -65,7 +65,7 @@ void SolidLinks::joinSurfaces(const btSoftBody& body, const std::vector<std::int
             nodes[k] = nodeIndex(body, body.m_tetras[i].m_n[k]);
         join(nodes, 4);
     }
-    m_surfaces.name();
+    m_surfaces.nameGroups();
 }
 
 bool SolidLinks::isSolid(Ends ends) const

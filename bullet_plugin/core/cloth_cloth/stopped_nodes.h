@@ -1,8 +1,8 @@
 // The velocities of nodes that stopped each other on their way through a step.
 //
-// Nodes of one impact keep their linear and angular momentum: their common rigid motion stays, and the rest of their
-// velocities shrinks with the way that each could go. Beside a held node, which takes the momentum, velocities shrink
-// whole. The energy of these velocities never grows. Double precision; the same bits everywhere.
+// Nodes of one impact keep their common rigid motion, and with it their linear and angular momentum. The rest of their
+// velocities shrinks with the way that each could go, or is lost. Beside a held node, which takes the momentum, whole
+// velocities shrink. The energy of these velocities never grows. Double precision; the same bits everywhere.
 #pragma once
 
 #include <cstdint>
@@ -27,7 +27,7 @@ enum class ImpactMotion
 {
     Shares,   // their common motion, and each its share of the rest
     Common,   // their common motion alone
-    Straight  // it without turning: angular momentum is lost
+    Straight  // their common velocity, without turning: angular momentum is lost
 };
 
 // Replaces the velocities. Returns whether there is an impact without held nodes.

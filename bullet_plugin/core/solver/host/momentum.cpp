@@ -80,7 +80,6 @@ void subtractGiven(const RigidRows& rigid, Vec3d origin, const Kept& kept, Sums&
     sums.m_missingTurning = sums.m_missingTurning - kept.m_received * wide(rigid.given().m_turning) -
                             cross(wide(rigid.given().m_reference) - origin, impulse);
 }
-
 }  // namespace
 
 bool keepsMomentum(const SolverCloth& cloth)

@@ -23,12 +23,12 @@ public:
         m_parents[rootOf(b)] = root;
     }
     // Names all groups, after the last join().
-    void name()
+    void nameGroups()
     {
         for (std::uint32_t& node : m_parents)
             if (node != kNone) node = rootOf(node);
     }
-    // Returns the name of a node's group, a node of it; kNone if it is in none. Valid after name().
+    // Returns the name of a node's group, a node of it; kNone if it is in none. Valid after nameGroups().
     std::uint32_t groupOf(std::size_t node) const { return m_parents[node]; }
 
 private:
