@@ -101,6 +101,54 @@ std::size_t meetingBox(const btSoftBody& cloth, const btTransform& pose, const b
     }
     return count;
 }
+
+// Returns the kinetic and height energy of sheets and a body, J.
+btScalar energyOf(const Layers& layers, const btRigidBody& body)
+{
+    const btVector3& spin = body.getAngularVelocity();
+    const btVector3 turning = body.getInvInertiaTensorWorld().inverse() * spin;
+    const btScalar height = body.getWorldTransform().getOrigin().y();
+    btScalar energy = (body.getLinearVelocity().length2() / 2 + 9.81f * height) / body.getInvMass();
+    energy += spin.dot(turning) / 2;
+    for (const btSoftBody* cloth : layers.m_cloths)
+        for (int i = 0; i < cloth->m_nodes.size(); ++i)
+        {
+            const btSoftBody::Node& node = cloth->m_nodes[i];
+            energy += (node.m_v.length2() / 2 + 9.81f * node.m_x.y()) / node.m_im;
+        }
+    return energy;
+}
+
+struct PlateAndBox
+{
+    const btVector3 kPlate{2, 0.1f, 2}, kBox{0.1f, 0.1f, 0.1f};
+    btBoxShape m_plate{kPlate}, m_boxShape{kBox};
+};
+
+// A heavy box falls on light sheets that lie on a plate.
+struct LoadedLayers : PlateAndBox, Layers
+{
+    LoadedLayers(int count, btScalar mass) : Layers(hostSettings(), count, 1.1f * kThickness)
+    {
+        for (btSoftBody* cloth : m_cloths)
+            cloth->setTotalMass(0.05f);
+        m_plate.setMargin(kMargin);
+        m_boxShape.setMargin(kMargin);
+        btTransform pose = btTransform::getIdentity();
+        pose.setOrigin(btVector3(0, 0.6f - kPlate.y() - 1.1f * kThickness, 0));
+        m_floor = &m_world.addKinematic(m_plate, pose);
+        pose.setOrigin(btVector3(0, 0.6f + kBox.y() + 1.1f * kThickness * btScalar(count) + 0.05f, 0));
+        m_box = &m_world.addDynamic(m_boxShape, mass, pose);
+        m_box->setActivationState(DISABLE_DEACTIVATION);
+    }
+    btScalar gap() const
+    {
+        const btScalar plate = m_floor->getWorldTransform().getOrigin().y() + kPlate.y();
+        return m_box->getWorldTransform().getOrigin().y() - kBox.y() - plate;
+    }
+
+    btRigidBody *m_floor = nullptr, *m_box = nullptr;
+};
 }  // namespace
 
 TEST(ClothMeetings, FiltersWorkFromBothSides)
@@ -300,6 +348,40 @@ TEST(ClothMeetings, ABodyOnTwoSheetsPassesNeither)
         }
         EXPECT_GT(box.getWorldTransform().getOrigin().y(), 0.1f) << mass;
     }
+}
+
+TEST(ClothMeetings, AHeavyBodyOnLayersGainsNoEnergy)
+{
+    for (const int count : {2, 4})
+        for (const btScalar mass : {btScalar(1), btScalar(10), btScalar(100)})
+        {
+            LoadedLayers layers(count, mass);
+            const btScalar start = energyOf(layers, *layers.m_box);
+            for (int step = 0; step < 90; ++step)
+            {
+                EXPECT_EQ(layers.run(1), 0u);
+                ASSERT_LT(energyOf(layers, *layers.m_box), 1.001f * start) << count << " " << mass << " " << step;
+            }
+            // The margins of plate and box are inside them.
+            EXPECT_NEAR(layers.gap(), kThickness * btScalar(count), 0.02f * kThickness) << count << " " << mass;
+            EXPECT_LT(layers.m_box->getLinearVelocity().length(), 0.01f);
+        }
+}
+
+TEST(ClothMeetings, LayersCarryABodyUpWithThePlateBelow)
+{
+    LoadedLayers layers(2, 10);
+    layers.m_world.step(60);
+    const btScalar speed = 0.3f, gap = layers.gap();
+    for (int step = 0; step < 60; ++step)
+    {
+        btTransform pose = layers.m_floor->getWorldTransform();
+        pose.getOrigin().setY(pose.getOrigin().y() + speed / 60);
+        layers.m_floor->setWorldTransform(pose);
+        EXPECT_EQ(layers.run(1), 0u);
+        EXPECT_NEAR(layers.gap(), gap, 0.1f * kThickness) << step;
+    }
+    EXPECT_NEAR(layers.m_box->getLinearVelocity().y(), speed, 0.05f * speed);
 }
 
 TEST(ClothMeetings, ImpactsKeepTheMomentum)

@@ -362,6 +362,33 @@ void ClothMeetings::record(ContactRecords& records) const
     }
 }
 
+void ClothMeetings::addLayers(SupportedNodes& supported) const
+{
+    if (!any()) return;
+    for (const Contact& found : m_contacts)
+    {
+        const SelfContactView view = m_set.view(found);
+        LayerContact layer = {};
+        layer.m_split = view.m_kind == DRAPE_SELF_EDGE_EDGE ? 2 : 1;
+        std::uint32_t nodes[4];
+        std::size_t members[4];
+        for (int k = 0; k < 4; ++k)
+        {
+            nodes[k] = std::uint32_t(view.m_nodes[k]);
+            members[k] = m_set.memberOf(nodes[k]);
+            layer.m_cloths[k] = m_members[members[k]].m_nodes;
+            layer.m_nodes[k] = nodes[k] - std::uint32_t(m_set.firstNode(members[k]));
+            layer.m_weights[k] = view.m_weights[k];
+        }
+        const float thickness = std::min(view.m_thickness, m_set.thicknessOf(members[0], members[3]));
+        const float gap = view.m_gap0 - thickness;
+        if (gap > SupportedNodes::kNearBy * thickness || !isGuarded(nodes)) continue;
+        layer.m_normal = vec3(view.m_normal[0], view.m_normal[1], view.m_normal[2]);
+        layer.m_recover = gap < 0 ? targetGap(gap, 0, thickness) - gap : 0;
+        supported.add(layer);
+    }
+}
+
 bool ClothMeetings::hasRows(const SolverNodes& nodes) const
 {
     return std::any_of(m_members.begin(), m_members.end(),

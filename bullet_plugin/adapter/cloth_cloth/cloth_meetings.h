@@ -16,6 +16,7 @@
 #include "bullet_plugin/core/cloth_cloth/contour_push.h"
 #include "bullet_plugin/core/cloth_cloth/stopped_nodes.h"
 #include "bullet_plugin/core/solver/host/cloth_rows.h"
+#include "bullet_plugin/core/solver/supported_nodes.h"
 #include "bullet_plugin/core/solver/topology/node_groups.h"
 
 namespace drape
@@ -36,6 +37,8 @@ public:
     // Finds the contacts along the recorded paths, and returns their rows. Nodes must stay in place until the step's
     // end.
     ClothRows& find(const NodesOf& nodesOf);
+    // Adds the layers of cloth that lie on each other, by the contacts of find().
+    void addLayers(SupportedNodes& supported) const;
     // Returns whether a body with these nodes has a row.
     bool hasRows(const SolverNodes& nodes) const;
     // Brings triangles that started the step intersecting apart a little, in the step's first call. Then shortens the

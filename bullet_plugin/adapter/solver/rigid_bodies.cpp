@@ -132,7 +132,7 @@ RigidBody& RigidBodies::follow(std::uint32_t index, const DynamicBody& dynamic, 
 }
 
 void RigidBodies::addRow(const DynamicBody& dynamic, btScalar dt, const SolverContact& contact,
-                         const BlockedNodes& blocked, RigidRows& rows)
+                         const SolverNodes& nodes, const SupportedNodes& supported, RigidRows& rows)
 {
     RigidFeature row = {};
     rows.setBodies(m_bodies);
@@ -140,7 +140,9 @@ void RigidBodies::addRow(const DynamicBody& dynamic, btScalar dt, const SolverCo
     for (int k = 0; k < 3 && contact.m_nodes[k] >= 0; ++k)
     {
         row.m_nodes[row.m_count] = std::uint32_t(contact.m_nodes[k]);
-        row.m_isBlocked[row.m_count] = blocked.isBlocked(contact.m_nodes[k], contact.m_plane.m_normal);
+        const NodeSupport* const support = supported.against(nodes, contact.m_nodes[k], contact.m_plane.m_normal);
+        row.m_isBlocked[row.m_count] = support != nullptr;
+        row.m_advance[row.m_count] = support ? support->m_advance : 0;
         row.m_weights[row.m_count++] = contact.m_plane.m_weights[k];
     }
     // The contact is where the cloth is, so that friction acts on both sides at one point.
@@ -150,7 +152,7 @@ void RigidBodies::addRow(const DynamicBody& dynamic, btScalar dt, const SolverCo
     row.m_plane.m_gap = contact.m_gaps.m_start;
     row.m_plane.m_recover = contact.m_gaps.m_start < 0 ? contact.m_gaps.m_target - contact.m_gaps.m_start : 0.0f;
     row.m_plane.m_friction = contact.m_friction;
-    row.m_reach = BlockedNodes::kNearBy * contact.m_thickness;
+    row.m_reach = SupportedNodes::kNearBy * contact.m_thickness;
     rows.add(row, float(dt));
 }
 

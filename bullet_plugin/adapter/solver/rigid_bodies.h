@@ -10,9 +10,9 @@
 
 #include "BulletSoftBody/btSoftBody.h"
 #include "bullet_plugin/adapter/collision/body_contacts.h"
-#include "bullet_plugin/core/solver/blocked_nodes.h"
 #include "bullet_plugin/core/solver/rigid_rows.h"
 #include "bullet_plugin/core/solver/solver_contact.h"
+#include "bullet_plugin/core/solver/supported_nodes.h"
 
 namespace drape
 {
@@ -25,9 +25,9 @@ public:
     void clear();
     // Adds the body's contacts and anchors. nodes: with recorded paths.
     void addRows(const btSoftBody& body, const SolverNodes& nodes, RigidRows& rows);
-    // Adds a contact with the mesh of a dynamic body. dt: s, of Bullet's step. blocked: the cloth's.
-    void addRow(const DynamicBody& dynamic, btScalar dt, const SolverContact& contact, const BlockedNodes& blocked,
-                RigidRows& rows);
+    // Adds a contact of a cloth with the mesh of a dynamic body. dt: s, of Bullet's step. nodes: the cloth's.
+    void addRow(const DynamicBody& dynamic, btScalar dt, const SolverContact& contact, const SolverNodes& nodes,
+                const SupportedNodes& supported, RigidRows& rows);
     // Gives the rigid bodies what the cloth pushed. Those with contacts of addRow() go where they yielded to.
     void applyImpulses() const;
 

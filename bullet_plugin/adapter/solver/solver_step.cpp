@@ -151,21 +151,8 @@ void SoftBodySolver::Work::detect()
 ClothRows* SoftBodySolver::Work::findMeetings()
 {
     if (!m_meetings.any()) return nullptr;
-    const auto nodesOf = [this](const btSoftBody& body)
-    { return substepNodes(body) > 0 ? &clothOf(body).m_nodes : nullptr; };
-    ClothRows& rows = m_meetings.find(nodesOf);
-    const auto meets = [&](const SolverCloth& cloth) { return m_meetings.hasRows(cloth.m_contacts->m_nodes); };
-    for (SolverCloth& cloth : m_touched)
-        cloth.m_meetsCloth = meets(cloth);
-    const auto first =
-        std::stable_partition(m_free.begin(), m_free.end(), [&](const SolverCloth& cloth) { return !meets(cloth); });
-    for (auto cloth = first; cloth != m_free.end(); ++cloth)
-    {
-        cloth->m_meetsCloth = true;
-        m_touched.push_back(*cloth);
-    }
-    m_free.erase(first, m_free.end());
-    return &rows;
+    return &m_meetings.find([this](const btSoftBody& body)
+                            { return substepNodes(body) > 0 ? &clothOf(body).m_nodes : nullptr; });
 }
 
 // Keeps cloth from meeting itself and other cloth on the way to where the solver put it, and checks bodies anew beside
@@ -279,9 +266,10 @@ void SoftBodySolver::Work::solveBodies()
     m_bulletLinks.clear();
     m_solved.assign(static_cast<std::size_t>(m_bodies.size()), 0);
     Stopwatch watch(hasBodies());
+    readSubsteps(m_bodies);
+    ClothRows* const rows = findMeetings();
     takeSubsteps(m_bodies);
     takeBulletsBodies(m_bodies);
-    ClothRows* const rows = findMeetings();
     parts.m_readMs += watch.lapMs();
     if (solveByBullet(m_bodies)) parts.m_bulletMs += watch.lapMs();
     // The host solves what the device has refused.

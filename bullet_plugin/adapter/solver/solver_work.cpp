@@ -56,24 +56,44 @@ void SoftBodySolver::Work::addDynamicRows(SubstepBody& substeps, const BodyConta
 {
     if (body.m_dynamicContacts.empty()) return;
     const ContactSource& source = m_state.m_found.source();
-    const BlockedNodes blocked(body.m_contacts);
     for (const DynamicContact& dynamic : body.m_dynamicContacts)
-        substeps.addRow(dynamic.m_body, m_dt, body.m_contacts.resolve(source, *dynamic.m_contact), blocked,
-                        m_rigidBodies);
+        substeps.addRow(dynamic.m_body, m_dt, body.m_contacts.resolve(source, *dynamic.m_contact),
+                        body.m_contacts.m_nodes, m_supported, m_rigidBodies);
 }
 
-// Hands the bodies whose links the core solves to the solver, with their paths, unless they are solved.
-void SoftBodySolver::Work::takeSubsteps(const Bodies& bodies)
+// Finds the nodes that cannot give way to dynamic bodies.
+void SoftBodySolver::Work::findSupported()
 {
-    m_touched.clear();
-    m_free.clear();
-    m_ends.clear();
+    m_supported.clear();
+    if (!m_step) return;
+    const std::vector<BodyContacts>& bodies = m_step->bodies();
+    if (std::all_of(bodies.begin(), bodies.end(),
+                    [](const BodyContacts& body) { return body.m_dynamicContacts.empty(); }))
+        return;
+    for (const BodyContacts& body : bodies)
+        m_supported.add(body.m_contacts, m_state.m_found.source());
+    m_meetings.addLayers(m_supported);
+    m_supported.spread();
+}
+
+// Reads the paths of the bodies whose links the core solves.
+void SoftBodySolver::Work::readSubsteps(const Bodies& bodies)
+{
     if (!m_begun)
     {
         m_rigidBodies.clear();
         beginSubsteps(bodies);
     }
     readPaths(bodies);
+}
+
+// Hands the bodies whose links the core solves to the solver, unless they are solved. After readSubsteps().
+void SoftBodySolver::Work::takeSubsteps(const Bodies& bodies)
+{
+    m_touched.clear();
+    m_free.clear();
+    m_ends.clear();
+    findSupported();
     for (int i = 0; i < bodies.size(); ++i)
     {
         btSoftBody& body = *bodies[i];
@@ -85,8 +105,10 @@ void SoftBodySolver::Work::takeSubsteps(const Bodies& bodies)
         if (cloth.m_isSolved) continue;
         substeps.addRows(body, cloth.m_nodes, m_rigidBodies);
         if (const BodyContacts* const contacts = contactsOf(body)) addDynamicRows(substeps, *contacts);
-        const bool isFree = !contactsOf(body) && !substeps.rigidRows();
-        (isFree ? m_free : m_touched).push_back({&cloth, &substeps.substeps(), nullptr, substeps.rigidRows(), kept});
+        const bool meetsCloth = m_meetings.hasRows(cloth.m_nodes);
+        const bool isFree = !contactsOf(body) && !substeps.rigidRows() && !meetsCloth;
+        (isFree ? m_free : m_touched)
+            .push_back({&cloth, &substeps.substeps(), nullptr, substeps.rigidRows(), kept, meetsCloth});
     }
 }
 
@@ -175,6 +197,7 @@ std::size_t SoftBodySolver::Work::endKept(const Bodies& bodies)
 bool SoftBodySolver::Work::submitBehind(const Bodies& bodies, const ContactSource& source)
 {
     if (m_step->hasPairs() && !source.onDevice().m_list) return false;
+    readSubsteps(bodies);
     takeSubsteps(bodies);
     return m_solver->submitBehind(m_touched, m_free, source, *m_stage);
 }

@@ -119,6 +119,8 @@ struct SoftBodySolver::Work
     void forSubsteps(const Bodies& bodies, const Call& call);
     void beginSubsteps(const Bodies& bodies);
     void readPaths(const Bodies& bodies);
+    void findSupported();
+    void readSubsteps(const Bodies& bodies);
     void takeSubsteps(const Bodies& bodies);
     void addDynamicRows(SubstepBody& substeps, const BodyContacts& body);
     void takeBulletsBodies(const Bodies& bodies);
@@ -165,6 +167,7 @@ struct SoftBodySolver::Work
     std::vector<std::unique_ptr<BulletLinks>> m_bulletLinks;
     std::vector<SolverCloth> m_free;
     RigidBodies m_rigidBodies;
+    SupportedNodes m_supported;
     std::vector<std::pair<btSoftBody*, ClothContacts*>> m_ends;  // results to be written to the bodies
     std::vector<unsigned char> m_solved;                         // by body: solved by Bullet or by its contacts
     std::vector<btSoftBody*> m_taken;                            // bodies that Drape handles in this step

@@ -82,10 +82,10 @@ public:
     // Adds rows for the rigid bodies that the body touches or hangs on, after readPaths(). nodes: those of it.
     void addRows(const btSoftBody& body, const SolverNodes& nodes, RigidBodies& bodies);
     // Adds a row for a contact with the mesh of a dynamic body, after addRows().
-    void addRow(const DynamicBody& body, btScalar dt, const SolverContact& contact, const BlockedNodes& blocked,
-                RigidBodies& bodies)
+    void addRow(const DynamicBody& body, btScalar dt, const SolverContact& contact, const SolverNodes& nodes,
+                const SupportedNodes& supported, RigidBodies& bodies)
     {
-        bodies.addRow(body, dt, contact, blocked, m_rigidRows);
+        bodies.addRow(body, dt, contact, nodes, supported, m_rigidRows);
     }
     // The cloth of a body without pairs.
     ClothContacts& alone() { return m_alone; }

@@ -65,7 +65,9 @@ void RigidRows::add(const RigidFeature& feature, float bodyTime)
 {
     refer(feature.m_body);
     m_bodyTime = bodyTime;
-    m_features.push_back({feature, 0, 0, vec3(0, 0, 0), {}});
+    const bool isBlocked = std::any_of(feature.m_isBlocked, feature.m_isBlocked + feature.m_count,
+                                       [](bool nodeIsBlocked) { return nodeIsBlocked; });
+    m_features.push_back({feature, isBlocked, 0, 0, 0, vec3(0, 0, 0), {}, {}});
 }
 
 bool RigidRows::bodiesYield() const
@@ -101,17 +103,31 @@ Vec3 RigidRows::displacementOf(const FeatureRow& row) const
     return displacement;
 }
 
+// Returns how far the contact's point is nearer to the body than what holds its blocked nodes moves it, m.
+float RigidRows::surplusOf(const FeatureRow& row) const
+{
+    const RigidFeature& feature = row.m_feature;
+    float surplus = 0;
+    for (std::uint32_t k = 0; k < feature.m_count; ++k)
+    {
+        if (!feature.m_isBlocked[k]) continue;
+        const float nearer = -vec3Dot(feature.m_plane.m_normal, m_nodes->displacement(feature.m_nodes[k]));
+        const float advance = m_featureStep.m_passed * feature.m_advance[k];
+        surplus += feature.m_weights[k] * std::max(0.0f, nearer - advance);
+    }
+    return surplus;
+}
+
 float RigidRows::inverseMassOf(const RigidFeature& feature, std::uint32_t k) const
 {
     return feature.m_isBlocked[k] ? 0.0f : m_nodes->inverseMass(feature.m_nodes[k]);
 }
 
-// Returns the mobility of both sides along the contact's normal, 1/kg.
-float RigidRows::mobilityOf(const FeatureRow& row) const
+// Returns the mobility of the body along the contact's normal, 1/kg.
+float RigidRows::bodyMobility(const RigidFeature& feature) const
 {
-    const RigidFeature& feature = row.m_feature;
-    return row.m_inverseMass + rigidMobility(&m_featureStep, m_featureStep.m_bodies + feature.m_body, feature.m_arm,
-                                             feature.m_plane.m_normal);
+    return rigidMobility(&m_featureStep, m_featureStep.m_bodies + feature.m_body, feature.m_arm,
+                         feature.m_plane.m_normal);
 }
 
 void RigidRows::begin(SolverNodes& nodes, const Substeps& substeps, int substep)
@@ -139,10 +155,15 @@ void RigidRows::begin(SolverNodes& nodes, const Substeps& substeps, int substep)
     {
         FeatureRow& row = m_features[i];
         const RigidFeature& feature = row.m_feature;
-        row.m_inverseMass = 0;
+        row.m_inverseMass = row.m_wholeMass = 0;
         for (std::uint32_t k = 0; k < feature.m_count; ++k)
-            row.m_inverseMass += feature.m_weights[k] * feature.m_weights[k] * inverseMassOf(feature, k);
+        {
+            const float squared = feature.m_weights[k] * feature.m_weights[k];
+            row.m_inverseMass += squared * inverseMassOf(feature, k);
+            row.m_wholeMass += squared * m_nodes->inverseMass(feature.m_nodes[k]);
+        }
         rigidBeginRow(&row.m_state);
+        rigidBeginRow(&row.m_surplus);
         const float violation = rigidViolation(&feature.m_plane, displacementOf(row), passed);
         if (mobilityOf(row) > 0 && violation > -feature.m_reach) m_near.push_back(std::uint32_t(i));
     }
@@ -156,11 +177,11 @@ void RigidRows::project()
         rigidProjectContact(&m_substep, &m_contacts[i], &m_contactStates[i]);
 }
 
-// Moves the feature's nodes, and the body the other way. by: kg m.
-void RigidRows::push(const RigidFeature& feature, Vec3 by)
+// Moves the feature's nodes, and the body the other way. by: kg m. movesBlocked: blocked nodes, too.
+void RigidRows::push(const RigidFeature& feature, Vec3 by, bool movesBlocked)
 {
     for (std::uint32_t k = 0; k < feature.m_count; ++k)
-        if (!feature.m_isBlocked[k])
+        if (movesBlocked || !feature.m_isBlocked[k])
             rigidShiftNode(&m_featureStep, feature.m_nodes[k], vec3Scale(by, feature.m_weights[k]));
     RigidBody* const body = m_featureStep.m_bodies + feature.m_body;
     if (!body->m_moves) return;
@@ -179,11 +200,27 @@ void RigidRows::projectFeatures(float relaxation)
     for (const std::uint32_t index : m_near)
     {
         FeatureRow& row = m_features[index];
-        Vec3 by;
-        if (rigidContactPush(&row.m_feature.m_plane, displacementOf(row), m_featureStep.m_passed, mobilityOf(row),
-                             relaxation, &row.m_state, &by))
-            push(row.m_feature, by);
+        const RigidPlane& plane = row.m_feature.m_plane;
+        Vec3 displacement = displacementOf(row), by;
+        if (row.m_isBlocked) displacement = vec3AddScaled(displacement, plane.m_normal, surplusOf(row));
+        if (rigidContactPush(&plane, displacement, m_featureStep.m_passed, mobilityOf(row), relaxation, &row.m_state,
+                             &by))
+            push(row.m_feature, by, false);
+        if (row.m_isBlocked) pushSurplus(row, relaxation);
     }
+}
+
+// Lets the body and a blocked feature push each other for what its nodes moved by themselves. They have the mass that
+// they have then: links and other cloth moved them, and light nodes throw no heavy body.
+void RigidRows::pushSurplus(FeatureRow& row, float relaxation)
+{
+    const RigidPlane& plane = row.m_feature.m_plane;
+    Vec3 displacement = displacementOf(row), by;
+    const float beyond = rigidViolation(&plane, displacement, m_featureStep.m_passed) - surplusOf(row);
+    displacement = vec3AddScaled(displacement, plane.m_normal, std::max(0.0f, beyond));
+    const float mobility = row.m_wholeMass + bodyMobility(row.m_feature);
+    if (rigidContactPush(&plane, displacement, m_featureStep.m_passed, mobility, relaxation, &row.m_surplus, &by))
+        push(row.m_feature, by, true);
 }
 
 void RigidRows::limitSpeeds()
@@ -230,8 +267,9 @@ void RigidRows::end()
         rigidEndRow(&m_featureStep, body, row.m_feature.m_arm, &row.m_state);
         row.m_state.m_carried = vec3AddScaled(row.m_state.m_carried, lagOf(body), -m_featureStep.m_time);
         row.m_pushed += row.m_state.m_multiplier * m_featureStep.m_perCorrection;
-        row.m_impulse =
-            vec3AddScaled(row.m_impulse, pushOf(row.m_feature.m_plane, row.m_state), m_featureStep.m_perCorrection);
+        for (const RigidRowState* state : {&row.m_state, &row.m_surplus})
+            row.m_impulse =
+                vec3AddScaled(row.m_impulse, pushOf(row.m_feature.m_plane, *state), m_featureStep.m_perCorrection);
     }
 }
 

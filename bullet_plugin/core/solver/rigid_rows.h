@@ -25,7 +25,8 @@ struct RigidFeature
     std::uint32_t m_count;  // number of nodes, up to 3
     std::uint32_t m_nodes[3];
     float m_weights[3];   // weights of the contact's point, sum 1
-    bool m_isBlocked[3];  // the node cannot give way, since an obstacle that does not yield is behind it
+    bool m_isBlocked[3];  // the node cannot give way, since what holds it does not yield
+    float m_advance[3];   // m, how far what holds a blocked node moves it against the normal in the step at most
     std::uint32_t m_body;
     Vec3 m_arm;  // m, from the body's centre of mass to the contact
     RigidPlane m_plane;
@@ -80,18 +81,24 @@ private:
     struct FeatureRow
     {
         RigidFeature m_feature;
-        float m_inverseMass;  // 1/kg, of the nodes at the contact's point
+        bool m_isBlocked;     // a node is
+        float m_inverseMass;  // 1/kg, of the nodes at the contact's point that give way
+        float m_wholeMass;    // 1/kg, of all its nodes
         float m_pushed;       // N s, along the normal in the step
         Vec3 m_impulse;       // N s, given to the cloth in the step
         RigidRowState m_state;
+        RigidRowState m_surplus;  // pushes against what blocked nodes moved by themselves
     };
 
     void refer(std::uint32_t body);
     Vec3 lagOf(std::uint32_t body) const;
     Vec3 displacementOf(const FeatureRow& row) const;
+    float surplusOf(const FeatureRow& row) const;
     float inverseMassOf(const RigidFeature& feature, std::uint32_t k) const;
-    float mobilityOf(const FeatureRow& row) const;
-    void push(const RigidFeature& feature, Vec3 by);
+    float bodyMobility(const RigidFeature& feature) const;
+    float mobilityOf(const FeatureRow& row) const { return row.m_inverseMass + bodyMobility(row.m_feature); }
+    void push(const RigidFeature& feature, Vec3 by, bool movesBlocked);
+    void pushSurplus(FeatureRow& row, float relaxation);
 
     std::vector<RigidBody>* m_bodies = nullptr;
     std::size_t m_turn = 0;
