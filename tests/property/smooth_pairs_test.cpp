@@ -206,10 +206,14 @@ TEST(SmoothPairs, RecheckBarsWhatIsNotSmoothAnyMore)
     bent[3 * 8 * 17 + 3 * 8 + 1] += 1.0f;
     SmoothPairs& pairs = sheet.m_patches.smoothPairs();
     const std::size_t all = pairs.check(flat.data(), flat.data(), 0.76f, threads);
-    const std::size_t lost = pairs.recheck(flat.data(), bent.data(), 0.76f, threads);
+    const std::vector<unsigned char> none(flat.size() / 3, 0);
+    EXPECT_EQ(pairs.recheck(flat.data(), bent.data(), 0.76f, none.data(), threads), 0u);
+    const std::size_t lost = pairs.recheck(flat.data(), bent.data(), 0.76f, nullptr, threads);
     EXPECT_GT(lost, 0u);
+    EXPECT_FALSE(pairs.patchesOfLost().empty());
     EXPECT_EQ(pairs.check(flat.data(), flat.data(), 0.76f, threads), all - lost);
-    EXPECT_EQ(pairs.recheck(flat.data(), bent.data(), 0.76f, threads), 0u);
+    EXPECT_EQ(pairs.recheck(flat.data(), bent.data(), 0.76f, nullptr, threads), 0u);
+    EXPECT_TRUE(pairs.patchesOfLost().empty());
     pairs.allowAll();
     EXPECT_EQ(pairs.check(flat.data(), flat.data(), 0.76f, threads), all);
 }

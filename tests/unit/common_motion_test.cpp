@@ -120,15 +120,25 @@ TEST(StoppedNodes, ThatMoveAsOneKeepTheirMomentum)
     }
 }
 
-TEST(StoppedNodes, BesideHeldNodesTheyLoseTheirShare)
+TEST(StoppedNodes, BesideHeldNodesTheyLoseTheLeastShare)
 {
-    Random random(8);
-    std::vector<StoppedNode> nodes = randomNodes(random, 3);
-    nodes[4].m_mass = 0;
-    const std::vector<StoppedNode> before = nodes;
-    EXPECT_FALSE(slowDown(nodes, ImpactMotion::Common));
-    for (std::size_t i = 0; i < nodes.size(); ++i)
-        expectNear(nodes[i].m_velocity, before[i].m_share * before[i].m_velocity, 0);
+    for (const bool moves : {false, true})
+    {
+        Random random(8);
+        std::vector<StoppedNode> nodes = randomNodes(random, 3);
+        if (!moves) nodes[5].m_mass = 0;
+        nodes[4].m_isHeld = moves;
+        const std::vector<StoppedNode> before = nodes;
+        double least = 1;
+        for (const StoppedNode& node : nodes)
+            least = std::min(least, node.m_share);
+        EXPECT_FALSE(slowDown(nodes, ImpactMotion::Common));
+        for (std::size_t i = 0; i < nodes.size(); ++i)
+        {
+            EXPECT_TRUE(nodes[i].m_isHeld);
+            expectNear(nodes[i].m_velocity, (before[i].m_mass > 0 ? least : 1) * before[i].m_velocity, 0);
+        }
+    }
 }
 
 TEST(StoppedNodes, ImpactsAreApart)

@@ -482,11 +482,10 @@ bool ClothMeetings::slowDown(const std::vector<float>& whole, const BodySet& hel
     std::vector<StoppedNode> speeds, ways;
     const auto read = [&](const Member& member, const btSoftBody::Node& node, std::size_t index)
     {
-        const bool isHeld = m_isHeld[index] || !(movableInverseMass(node) > 0) || m_guard.isCarried(index) ||
-                            held.count(member.m_body) > 0;
+        const bool moves = !m_isHeld[index] && movableInverseMass(node) > 0 && !m_guard.isCarried(index);
         const Vec3d start = pointAt(m_set.start(), index);
-        speeds.push_back({start, wideOf(node.m_v), isHeld ? 0 : 1 / double(node.m_im), m_guard.shares()[index],
-                          m_impacts.groupOf(index)});
+        speeds.push_back({start, wideOf(node.m_v), moves ? 1 / double(node.m_im) : 0, m_guard.shares()[index],
+                          m_impacts.groupOf(index), held.count(member.m_body) > 0});
         ways.push_back(speeds.back());
         ways.back().m_velocity = pointAt(whole.data(), index) - start;
     };
@@ -495,9 +494,11 @@ bool ClothMeetings::slowDown(const std::vector<float>& whole, const BodySet& hel
     const bool goesOn = mayGoOn && drape::slowDown(ways, sticks ? ImpactMotion::Straight : ImpactMotion::Shares);
     const auto write = [&](const Member&, btSoftBody::Node& node, std::size_t index)
     {
-        const bool isFree = speeds[index].m_impact != NodeGroups::kNone && !speeds[index].m_isHeld;
+        const StoppedNode& speed = speeds[index];
+        const bool isStopped = speed.m_impact != NodeGroups::kNone && speed.m_mass > 0;
+        const bool isFree = isStopped && !speed.m_isHeld;
         // Ways that others hold are stopped again in the next turn.
-        if (isFree || (!goesOn && speeds[index].m_share < 1)) node.m_v = narrowOf(speeds[index].m_velocity);
+        if (isFree || (isStopped && !goesOn)) node.m_v = narrowOf(speed.m_velocity);
         if (!goesOn) return;
         float* end = m_set.end() + 3 * index;
         std::copy_n(whole.data() + 3 * index, 3, end);

@@ -1,6 +1,7 @@
 #include "cloth_guard.h"
 
 #include <algorithm>
+#include <iterator>
 
 #include "bullet_plugin/core/threads/ranges.h"
 
@@ -8,7 +9,8 @@ namespace drape
 {
 namespace
 {
-constexpr int kMostRounds = 8;
+// Maximum number of rounds until every pair gets a resting plane. Few pairs take part in late ones.
+constexpr int kMostRounds = 64;
 // Maximum number of times that held nodes carry others along in a step.
 constexpr int kMostCarries = 16;
 // Minimum pairs for sharing them among threads, and the pairs of a range.
@@ -25,15 +27,27 @@ double clearanceOf(const ClothSet& set, const FeatureTest& test, const std::uint
 }
 }  // namespace
 
+// Calls work(index) for all pairs from the first on.
 template <class Work>
-void ClothGuard::eachPair(ThreadTeam& threads, const Work& work)
+void ClothGuard::eachPair(std::size_t first, ThreadTeam& threads, const Work& work)
 {
-    const auto range = [&](std::size_t first, std::size_t last)
+    const auto range = [&](std::size_t from, std::size_t to)
     {
-        for (std::size_t i = first; i < last; ++i)
-            work(i);
+        for (std::size_t i = from; i < to; ++i)
+            work(first + i);
     };
-    forRanges(m_pairs.size(), kLeastShared, kRange, &threads, range);
+    forRanges(m_pairs.size() - first, kLeastShared, kRange, &threads, range);
+}
+
+// Forgets pairs that were listed before, and notes the others.
+void ClothGuard::dropKnown()
+{
+    std::vector<FeatureTest> added, all;
+    std::set_difference(m_tests.begin(), m_tests.end(), m_known.begin(), m_known.end(), std::back_inserter(added),
+                        ClothSet::isBefore);
+    std::merge(m_known.begin(), m_known.end(), added.begin(), added.end(), std::back_inserter(all), ClothSet::isBefore);
+    m_tests.swap(added);
+    m_known.swap(all);
 }
 
 // Forgets pairs that are not guarded.
@@ -49,23 +63,27 @@ void ClothGuard::dropOthers(const ClothSet& set, const IsGuarded& isGuarded)
     m_tests.erase(std::remove_if(m_tests.begin(), m_tests.end(), isOther), m_tests.end());
 }
 
+// Adds the pairs that were listed last.
 void ClothGuard::takePairs(const ClothSet& set, const std::vector<unsigned char>& isHeld, ThreadTeam& threads)
 {
-    m_pairs.resize(m_tests.size());
+    const std::size_t first = m_pairs.size();
+    m_pairs.resize(first + m_tests.size());
+    m_isNew.resize(m_pairs.size(), 0);
     const auto take = [&](std::size_t i)
     {
         Guarded& pair = m_pairs[i];
-        pair.m_paths.m_split = set.nodesOf(m_tests[i], pair.m_nodes);
+        pair.m_paths.m_split = set.nodesOf(m_tests[i - first], pair.m_nodes);
         for (int k = 0; k < 4; ++k)
         {
             pair.m_paths.m_start[k] = pointAt(set.start(), pair.m_nodes[k]);
-            pair.m_paths.m_end[k] = pointAt(set.end(), pair.m_nodes[k]);
+            pair.m_paths.m_end[k] = pointAt(m_ends.data(), pair.m_nodes[k]);
             pair.m_paths.m_isHeld[k] = isHeld[pair.m_nodes[k]] || m_isLeading[pair.m_nodes[k]];
         }
-        pair.m_clearance = clearanceOf(set, m_tests[i], pair.m_nodes, pair.m_paths);
-        pair.m_rests = pair.m_needsPlane = false;
+        pair.m_clearance = clearanceOf(set, m_tests[i - first], pair.m_nodes, pair.m_paths);
+        pair.m_rests = false;
+        pair.m_round = 0;
     };
-    eachPair(threads, take);
+    eachPair(first, threads, take);
 }
 
 // Gives a resting plane to pairs that no moving one keeps apart on the way to where the nodes now end, or to all pairs.
@@ -75,38 +93,69 @@ bool ClothGuard::checkPairs(const ClothSet& set, bool all, ThreadTeam& threads)
     const auto check = [&](std::size_t i)
     {
         Guarded& pair = m_pairs[i];
-        pair.m_needsPlane = false;
+        m_isNew[i] = 0;
         if (pair.m_rests) return;
+        const bool isKnown = std::all_of(pair.m_nodes, pair.m_nodes + 4,
+                                         [&](std::uint32_t node) { return m_fellIn[node] < pair.m_round; });
+        if (isKnown && !all) return;
+        pair.m_round = m_round;
         FeaturePaths now = pair.m_paths;
         for (int k = 0; k < 4; ++k)
             now.m_end[k] = pointAt(set.end(), pair.m_nodes[k]);
         if (!all && stayApart(now, pair.m_clearance)) return;
         pair.m_plane = separatingPlane(pair.m_paths, pair.m_clearance);
-        pair.m_rests = pair.m_needsPlane = true;
+        pair.m_rests = true;
+        m_isNew[i] = 1;
     };
-    eachPair(threads, check);
-    return std::any_of(m_pairs.begin(), m_pairs.end(), [](const Guarded& pair) { return pair.m_needsPlane; });
+    eachPair(0, threads, check);
+    return std::find(m_isNew.begin(), m_isNew.end(), 1) != m_isNew.end();
 }
 
-// Lets every node go the least share of its path that its resting planes allow. rounded: instead stops nodes at their
-// starts that fail at their rounded ends. Returns whether a share fell.
-bool ClothGuard::shorten(const ClothSet& set, bool rounded)
+// Lets the pair's nodes go the least share of their paths that its resting plane allows. set: if not null, instead
+// stops nodes at their starts that fail at their rounded ends. Returns whether a share fell.
+bool ClothGuard::shorten(Guarded& pair, const ClothSet* set)
 {
     bool fell = false;
-    for (const Guarded& pair : m_pairs)
+    for (int k = 0; pair.m_plane.m_isCertified && k < 4; ++k)
     {
-        for (int k = 0; pair.m_rests && pair.m_plane.m_isCertified && k < 4; ++k)
-        {
-            double& share = m_shares[pair.m_nodes[k]];
-            if (pair.m_paths.m_isHeld[k] || !(share > 0)) continue;
-            const double most = rounded ? 0 : clearShare(pair.m_plane, pair.m_paths, k);
-            if (most >= share) continue;
-            if (rounded && staysClear(pair.m_plane, pair.m_paths, k, pointAt(set.end(), pair.m_nodes[k]))) continue;
-            share = most;
-            fell = true;
-        }
+        double& share = m_shares[pair.m_nodes[k]];
+        if (pair.m_paths.m_isHeld[k] || !(share > 0)) continue;
+        const double most = set ? 0 : clearShare(pair.m_plane, pair.m_paths, k);
+        if (most >= share) continue;
+        if (set && staysClear(pair.m_plane, pair.m_paths, k, pointAt(set->end(), pair.m_nodes[k]))) continue;
+        share = most;
+        m_fellIn[pair.m_nodes[k]] = m_round;
+        fell = true;
     }
     return fell;
+}
+
+bool ClothGuard::shortenNew()
+{
+    bool fell = false;
+    for (std::size_t i = 0; i < m_pairs.size(); ++i)
+        if (m_isNew[i]) fell = shorten(m_pairs[i], nullptr) || fell;
+    return fell;
+}
+
+bool ClothGuard::shortenRounded(const ClothSet& set)
+{
+    bool fell = false;
+    for (Guarded& pair : m_pairs)
+        if (pair.m_rests) fell = shorten(pair, &set) || fell;
+    return fell;
+}
+
+// Shortens paths until all pairs stay apart.
+void ClothGuard::settle(ClothSet& set, ThreadTeam& threads)
+{
+    for (int rounds = 1;; ++rounds)
+    {
+        ++m_round;
+        const bool anyNew = checkPairs(set, rounds == kMostRounds, threads);
+        if (!shortenNew() && !anyNew && !shortenRounded(set)) return;
+        place(set);
+    }
 }
 
 // Writes the ends of nodes that go a share of their paths. Without a share that is the start, to the last bit.
@@ -213,10 +262,17 @@ GuardResult ClothGuard::apply(ClothSet& set, const std::vector<unsigned char>& i
             mayCarry = false;
             again = true;
         }
-        // Shortened paths may need pairs that findPairs() left out. Each turn lists more of them.
-        if (!again && (result.m_shortened == 0 || result.m_tooMany || set.staysSmooth(threads))) return result;
+        if (!again) return result;
         std::copy(m_ends.begin(), m_ends.end(), set.end());
     }
+}
+
+void ClothGuard::stopAll(ClothSet& set, const std::vector<unsigned char>& isHeld)
+{
+    m_pairs.clear();
+    for (std::size_t node = 0; node < set.nodeCount(); ++node)
+        m_shares[node] = isHeld[node] ? 1 : 0;
+    place(set);
 }
 
 GuardResult ClothGuard::applyOnce(ClothSet& set, const std::vector<unsigned char>& isHeld, const IsGuarded& isGuarded,
@@ -224,24 +280,29 @@ GuardResult ClothGuard::applyOnce(ClothSet& set, const std::vector<unsigned char
 {
     GuardResult result;
     m_shares.assign(set.nodeCount(), 1.0);
+    m_fellIn.assign(set.nodeCount(), 0);
+    m_round = 0;
     m_pairs.clear();
-    result.m_tooMany = !set.findPairs(2 * kGuardClearance * set.thickness(), limit, threads, m_tests);
-    if (result.m_tooMany)
+    m_known.clear();
+    const float reach = 2 * kGuardClearance * set.thickness();
+    bool isWhole = set.findPairs(reach, limit, threads, m_tests);
+    for (;;)
     {
-        for (std::size_t node = 0; node < set.nodeCount(); ++node)
-            if (!isHeld[node]) m_shares[node] = 0;
-        place(set);
-    }
-    else
-    {
+        if (isWhole) dropKnown();
+        result.m_tooMany = !isWhole || m_known.size() > limit;
+        if (result.m_tooMany)
+        {
+            stopAll(set, isHeld);
+            break;
+        }
         dropOthers(set, isGuarded);
         takePairs(set, isHeld, threads);
-    }
-    for (int round = 1;; ++round)
-    {
-        const bool anyNew = checkPairs(set, round == kMostRounds, threads);
-        if (!shorten(set, false) && !anyNew && !shorten(set, true)) break;
-        place(set);
+        settle(set, threads);
+        m_isMoved.resize(set.nodeCount());
+        std::transform(m_shares.begin(), m_shares.end(), m_isMoved.begin(), [](double share) { return share < 1; });
+        // Shortened paths may need pairs that findPairs() left out.
+        if (set.findLost(m_isMoved, threads) == 0) break;
+        isWhole = set.listLost(reach, limit, threads, m_tests);
     }
     result.m_pairs = m_pairs.size();
     result.m_shortened =

@@ -8,8 +8,9 @@
 //
 // Method: a pair is left alone if a moving plane keeps its features apart on the way to their rounded ends. Otherwise
 // it gets a plane that rests (separating_plane.h), and a node goes the least share of its path that its resting planes
-// allow. Shorter paths change what other pairs need, so all are checked again until nothing changes. After
-// kMostRounds every pair gets a resting plane. A node that stays where it started is on its side of all of them. Held
+// allow. Shorter paths change what other pairs need, so those with such nodes are checked again until nothing changes.
+// After kMostRounds every pair gets a resting plane. Pairs of patches that lay smoothly on the whole paths and do not on
+// the shorter ones are listed then. A node that stays where it started is on its side of all resting planes. Held
 // nodes stay on theirs only if they move little. Where they do not, the other feature is carried along: the ends of its
 // free nodes move with the plane, and all pairs are checked anew. Nodes that are carried then count as held, so that
 // they carry what lies behind them. If more pairs are forced in the end than without carrying, none is carried.
@@ -86,25 +87,35 @@ private:
         double m_clearance;       // m
         SeparatingPlane m_plane;  // if m_rests
         bool m_rests;             // the pair has a resting plane
-        bool m_needsPlane;        // after a check
+        std::uint32_t m_round;    // of the last check, counted from the start of applyOnce(); 0: none
     };
 
     GuardResult applyOnce(ClothSet& set, const std::vector<unsigned char>& isHeld, const IsGuarded& isGuarded,
                           std::uint64_t limit, ThreadTeam& threads);
+    void stopAll(ClothSet& set, const std::vector<unsigned char>& isHeld);
     template <class Work>
-    void eachPair(ThreadTeam& threads, const Work& work);
+    void eachPair(std::size_t first, ThreadTeam& threads, const Work& work);
+    void dropKnown();
     void dropOthers(const ClothSet& set, const IsGuarded& isGuarded);
     void takePairs(const ClothSet& set, const std::vector<unsigned char>& isHeld, ThreadTeam& threads);
+    void settle(ClothSet& set, ThreadTeam& threads);
     bool checkPairs(const ClothSet& set, bool all, ThreadTeam& threads);
-    bool shorten(const ClothSet& set, bool rounded);
+    bool shorten(Guarded& pair, const ClothSet* set);
+    bool shortenNew();
+    bool shortenRounded(const ClothSet& set);
     void place(ClothSet& set) const;
     static bool isForced(const Guarded& pair);
     int yielding(const Guarded& pair) const;
     bool carry(const Guarded& pair);
     bool carryForced();
 
-    std::vector<FeatureTest> m_tests;
+    std::vector<FeatureTest> m_tests;  // pairs that were listed last
+    std::vector<FeatureTest> m_known;  // all that were listed, in canonical order
     std::vector<Guarded> m_pairs;
+    std::vector<unsigned char> m_isNew;    // by pair: it got its resting plane in this round
+    std::uint32_t m_round = 0;             // see Guarded
+    std::vector<std::uint32_t> m_fellIn;   // by node: the round in which its share fell last, 0: in none
+    std::vector<unsigned char> m_isMoved;  // by node: it does not go its whole path
     std::vector<double> m_shares;
     std::vector<float> m_ends;                             // ends of the whole paths
     const std::vector<unsigned char>* m_isHeld = nullptr;  // the caller's, during apply()

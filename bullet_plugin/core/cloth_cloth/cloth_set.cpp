@@ -171,14 +171,26 @@ bool ClothSet::findPairs(float reach, std::uint64_t limit, ThreadTeam& threads, 
     const bool isWhole = listPairs(stepFor(reach, 1.0f, false), limit, threads, pairs);
     m_smoothPairs = m_patches->counts().m_smoothPairs;
     if (!isWhole) return false;
-    std::sort(pairs.begin(), pairs.end(),
-              [&](const FeatureTest& a, const FeatureTest& b) { return keyOf(a) < keyOf(b); });
+    std::sort(pairs.begin(), pairs.end(), isBefore);
     return true;
 }
 
-bool ClothSet::staysSmooth(ThreadTeam& threads)
+bool ClothSet::isBefore(const FeatureTest& first, const FeatureTest& second)
 {
-    return m_patches->smoothPairs().recheck(start(), end(), kGuardedShare, threads) == 0;
+    return keyOf(first) < keyOf(second);
+}
+
+std::size_t ClothSet::findLost(const std::vector<unsigned char>& isMoved, ThreadTeam& threads)
+{
+    return m_patches->findLost(stepFor(0, 1.0f, false), isMoved.data(), threads);
+}
+
+bool ClothSet::listLost(float reach, std::uint64_t limit, ThreadTeam& threads, std::vector<FeatureTest>& pairs)
+{
+    m_patches->cullLost(stepFor(reach, 1.0f, false), limit, threads);
+    if (!m_patches->copyTests(limit, pairs)) return false;
+    std::sort(pairs.begin(), pairs.end(), isBefore);
+    return true;
 }
 
 void ClothSet::allowSmooth()

@@ -67,14 +67,19 @@ public:
     // others, in a canonical order. Valid until the next call. More than `limit` give false. Leaves out pairs of
     // patches that keep kGuardedShare of their distance at rest on the whole way.
     bool findPairs(float reach, std::uint64_t limit, ThreadTeam& threads, std::vector<FeatureTest>& pairs);
+    // Returns whether a pair comes before another one in the canonical order.
+    static bool isBefore(const FeatureTest& first, const FeatureTest& second);
     // Writes the four nodes of a pair, the first feature's first. Returns how many of them are the first's.
     int nodesOf(const FeatureTest& pair, std::uint32_t nodes[4]) const;
     // Returns a pair's distance at rest, m; that of features of two members is beyond the thickness.
     float restDistance(const FeatureTest& pair) const;
 
-    // Returns whether all pairs that the last findPairs() left out keep their distance with the ends as they are now.
-    // Later calls list the pairs that do not, until allowSmooth().
-    bool staysSmooth(ThreadTeam& threads);
+    // Looks for pairs of patches that findPairs() left out and that do not keep their distance with the ends as they
+    // are now. Returns how many there are. No findPairs() leaves them out until allowSmooth(). isMoved: by node,
+    // whether its end is another one than in the last call of either function.
+    std::size_t findLost(const std::vector<unsigned char>& isMoved, ThreadTeam& threads);
+    // Returns the pairs of features in the pairs of patches of the last findLost(), and maybe others, like findPairs().
+    bool listLost(float reach, std::uint64_t limit, ThreadTeam& threads, std::vector<FeatureTest>& pairs);
     void allowSmooth();
 
     // Lists, for all pairs of triangles that intersect where they start, the six nodes. Exact. Triangles with a common

@@ -95,6 +95,33 @@ void HostSelfPatches::pack(const SelfStep& step, ThreadTeam& threads)
                            (levels[level + 1] - levels[level]) * kWidth);
 }
 
+template <class PatchAt>
+std::size_t HostSelfPatches::cullPatches(const SelfStep& step, std::size_t count, const PatchAt& patchAt,
+                                         const TestList& list, ThreadTeam& threads)
+{
+    const SelfRadii radii = radiiOf(step);
+    m_counters.m_selfTests = 0;
+    runShared(threads, isWorth(step), count,
+              [&](std::size_t i)
+              { m_kernels->m_self->m_cull(patchAt(i), step.m_view.m_cloth, radii, m_patches, list); });
+    return m_counters.m_selfTests;
+}
+
+// Lists the pairs of features of some patches with all.
+template <class PatchAt>
+void HostSelfPatches::fillTests(const SelfStep& step, std::size_t count, const PatchAt& patchAt, std::uint64_t limit,
+                                ThreadTeam& threads)
+{
+    if (m_tests.empty()) m_tests.resize(kFirstTests);
+    const auto fill = [&]
+    {
+        const TestList list = {m_tests.data(), std::uint32_t(m_tests.size()), std::uint32_t(limit),
+                               &m_counters.m_selfTests};
+        return m_testsBefore = cullPatches(step, count, patchAt, list, threads);
+    };
+    m_retries = fillGrowing(m_tests, limit, fill);
+}
+
 void HostSelfPatches::cull(const SelfStep& step, std::uint64_t limit, ThreadTeam& threads)
 {
     m_counters = {};
@@ -102,14 +129,24 @@ void HostSelfPatches::cull(const SelfStep& step, std::uint64_t limit, ThreadTeam
     if (m_patches.m_patchCount == 0) return;
     checkSmooth(step, threads);
     pack(step, threads);
-    if (m_tests.empty()) m_tests.resize(kFirstTests);
-    const auto fill = [&]
-    {
-        const TestList list = {m_tests.data(), std::uint32_t(m_tests.size()), std::uint32_t(limit),
-                               &m_counters.m_selfTests};
-        return m_testsBefore = cullPatches(step, {0, m_patches.m_patchCount}, list, threads);
-    };
-    m_retries = fillGrowing(m_tests, limit, fill);
+    fillTests(step, m_patches.m_patchCount, [](std::size_t patch) { return std::uint32_t(patch); }, limit, threads);
+}
+
+void HostSelfPatches::cullLost(const SelfStep& step, std::uint64_t limit, ThreadTeam& threads)
+{
+    m_counters = {};
+    m_retries = 0;
+    pack(step, threads);
+    m_patches.m_smooth = m_smooth.viewOfLost();
+    const std::vector<std::uint32_t> patches = m_smooth.patchesOfLost();
+    fillTests(step, patches.size(), [&](std::size_t i) { return patches[i]; }, limit, threads);
+    m_patches.m_smooth = m_smooth.view();
+}
+
+std::size_t HostSelfPatches::findLost(const SelfStep& step, const unsigned char* isMoved, ThreadTeam& threads)
+{
+    if (!(step.m_smoothShare > 0)) return 0;
+    return m_smooth.recheck(step.start(), step.m_view.m_cloth.m_end, step.m_smoothShare, isMoved, threads);
 }
 
 void HostSelfPatches::checkSmooth(const SelfStep& step, ThreadTeam& threads)
@@ -137,19 +174,6 @@ bool HostSelfPatches::copyTests(std::uint64_t limit, std::vector<FeatureTest>& t
     return true;
 }
 
-std::size_t HostSelfPatches::cullPatches(const SelfStep& step, ItemRange patches, const TestList& list,
-                                         ThreadTeam& threads)
-{
-    const SelfRadii radii = radiiOf(step);
-    m_counters.m_selfTests = 0;
-    runShared(threads, isWorth(step), patches.count(),
-              [&](std::size_t patch) {
-                  m_kernels->m_self->m_cull(patches.first() + std::uint32_t(patch), step.m_view.m_cloth, radii,
-                                            m_patches, list);
-              });
-    return m_counters.m_selfTests;
-}
-
 std::vector<std::uint64_t> HostSelfPatches::countTests(const SelfStep& step, std::uint64_t limit, ThreadTeam& threads)
 {
     std::vector<std::uint64_t> counts(step.m_cloths.meshCount(), 0);
@@ -158,9 +182,13 @@ std::vector<std::uint64_t> HostSelfPatches::countTests(const SelfStep& step, std
     pack(step, threads);
     const TestList nowhere = {m_tests.data(), 0, std::uint32_t(limit), &m_counters.m_selfTests};
     for (std::size_t slot = 0; slot < counts.size(); ++slot)
-        if (step.m_reach.m_radius[slot] >= 0.0f)
-            counts[slot] = std::min<std::uint64_t>(
-                cullPatches(step, patchesOf(m_layout, {slot, slot + 1}), nowhere, threads), limit + 1);
+    {
+        if (!(step.m_reach.m_radius[slot] >= 0.0f)) continue;
+        const ItemRange patches = patchesOf(m_layout, {slot, slot + 1});
+        const auto patchAt = [&](std::size_t i) { return patches.first() + std::uint32_t(i); };
+        counts[slot] =
+            std::min<std::uint64_t>(cullPatches(step, patches.count(), patchAt, nowhere, threads), limit + 1);
+    }
     return counts;
 }
 

@@ -31,6 +31,11 @@ public:
 
     // Computes which pairs of patches are smooth in the step, for isSmooth(); cull() does so, too.
     void checkSmooth(const SelfStep& step, ThreadTeam& threads);
+    // Looks for pairs of patches that are smooth so far and are not with the step's ends. Returns how many there are.
+    // isMoved: see SmoothPairs::recheck().
+    std::size_t findLost(const SelfStep& step, const unsigned char* isMoved, ThreadTeam& threads);
+    // Lists the pairs of features in pairs of patches that the last findLost() found, and maybe others, as cull() does.
+    void cullLost(const SelfStep& step, std::uint64_t limit, ThreadTeam& threads);
     // Returns whether cull() leaves out a pair of features because their patches lie smoothly.
     bool isSmooth(const FeatureTest& pair) const;
     // Copies the pairs of the last cull(), in any order; false, with none copied, if they exceeded the limit.
@@ -54,7 +59,12 @@ private:
     bool isWorth(const SelfStep& step) const;  // to wake threads
     void pack(const SelfStep& step, ThreadTeam& threads);
     // Culls these patches against all, with room for as many tests as the list has. Returns how many tests there are.
-    std::size_t cullPatches(const SelfStep& step, ItemRange patches, const TestList& list, ThreadTeam& threads);
+    template <class PatchAt>
+    std::size_t cullPatches(const SelfStep& step, std::size_t count, const PatchAt& patchAt, const TestList& list,
+                            ThreadTeam& threads);
+    template <class PatchAt>
+    void fillTests(const SelfStep& step, std::size_t count, const PatchAt& patchAt, std::uint64_t limit,
+                   ThreadTeam& threads);
 
     const CpuKernels* m_kernels;
     std::uint32_t m_revision = 0;

@@ -457,14 +457,34 @@ std::size_t SmoothPairs::check(const float* start, const float* end, float share
     return std::size_t(std::count(m_isSmooth.begin(), m_isSmooth.end(), 1));
 }
 
-std::size_t SmoothPairs::recheck(const float* start, const float* end, float share, ThreadTeam& threads)
+bool SmoothPairs::isAnyMoved(const Cover& cover, const unsigned char* isMoved) const
 {
-    std::vector<unsigned char> isLost(m_covers.size(), 0);
-    forPairs(start, end, share, threads,
-             [&](std::size_t pair, const auto& isSmooth) { isLost[pair] = m_isSmooth[pair] && !isSmooth(); });
-    for (std::size_t i = 0; i < isLost.size(); ++i)
-        m_isBarred[i] |= isLost[i];
-    return std::size_t(std::count(isLost.begin(), isLost.end(), 1));
+    const std::uint32_t* const first = m_nodes.data() + cover.m_firstNode;
+    return !isMoved ||
+           std::any_of(first, first + cover.m_nodeCount, [&](std::uint32_t node) { return isMoved[node] != 0; });
+}
+
+std::size_t SmoothPairs::recheck(const float* start, const float* end, float share, const unsigned char* isMoved,
+                                 ThreadTeam& threads)
+{
+    m_isKept.assign(m_covers.size(), 1);
+    const auto take = [&](std::size_t pair, const auto& isSmooth)
+    {
+        if (!m_isSmooth[pair] || !isAnyMoved(m_covers[pair], isMoved) || isSmooth()) return;
+        m_isKept[pair] = m_isSmooth[pair] = 0;
+        m_isBarred[pair] = 1;
+    };
+    forPairs(start, end, share, threads, take);
+    return std::size_t(std::count(m_isKept.begin(), m_isKept.end(), 0));
+}
+
+std::vector<std::uint32_t> SmoothPairs::patchesOfLost() const
+{
+    std::vector<std::uint32_t> patches;
+    for (std::uint32_t patch = 0; patch + 1 < m_first.size(); ++patch)
+        if (std::count(m_isKept.begin() + m_first[patch], m_isKept.begin() + m_first[patch + 1], 0) > 0)
+            patches.push_back(patch);
+    return patches;
 }
 
 void SmoothPairs::allowAll()

@@ -36,13 +36,19 @@ public:
     // Computes which pairs are smooth between two places of the nodes, and returns how many. share: of the distance at
     // rest, above 0. Pairs that recheck() has barred count as not smooth.
     std::size_t check(const float* start, const float* end, float share, ThreadTeam& threads);
-    // Bars the pairs of the last check() that are not smooth with these places. Returns how many there are.
-    std::size_t recheck(const float* start, const float* end, float share, ThreadTeam& threads);
+    // Bars the pairs that are smooth so far and are not with these places. Returns how many there are. isMoved: by node,
+    // whether it is elsewhere than in the last check() or recheck(); null: all may be.
+    std::size_t recheck(const float* start, const float* end, float share, const unsigned char* isMoved,
+                        ThreadTeam& threads);
     void allowAll();
 
     // Returns whether two triangles belong to a pair that the last check() found smooth.
     bool isSmooth(std::uint32_t first, std::uint32_t second) const;
     SmoothView view() const { return {m_first.data(), m_others.data(), m_isSmooth.data()}; }
+    // Returns the view in which only the pairs that the last recheck() barred are not smooth.
+    SmoothView viewOfLost() const { return {m_first.data(), m_others.data(), m_isKept.data()}; }
+    // Lists the patches with such a pair, the first of the two each.
+    std::vector<std::uint32_t> patchesOfLost() const;
 
 private:
     // The cover of a pair.
@@ -58,6 +64,7 @@ private:
     Mesh readMesh(const MeshPool& cloths, const Patches& patches, const float* rest);
     void append(const SmoothPairs& part);
 
+    bool isAnyMoved(const Cover& cover, const unsigned char* isMoved) const;
     bool isSmoothNow(const Cover& cover, const float* start, const float* end, float share) const;
     template <class Take>
     void forPairs(const float* start, const float* end, float share, ThreadTeam& threads, const Take& take);
@@ -67,6 +74,7 @@ private:
     std::vector<std::uint32_t> m_others;    // by pair: the patch itself or a later one, ascending
     std::vector<unsigned char> m_isSmooth;  // by pair
     std::vector<unsigned char> m_isBarred;  // by pair
+    std::vector<unsigned char> m_isKept;    // by pair: the last recheck() did not bar it
     std::vector<Cover> m_covers;            // by pair
     std::vector<std::uint32_t> m_nodes;     // the covers' nodes
     std::vector<float> m_places;            // two per node of m_nodes: m, in the pair's plane at rest

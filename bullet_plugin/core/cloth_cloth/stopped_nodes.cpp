@@ -1,5 +1,6 @@
 #include "stopped_nodes.h"
 
+#include <algorithm>
 #include <cmath>
 #include <unordered_map>
 
@@ -13,6 +14,7 @@ struct Impact
 {
     CommonMotion m_whole, m_left;  // the velocities before, and what remains of their differences
     bool m_isHeld = false;
+    double m_leastShare = 1;
 };
 
 bool isFinite(Vec3d v)
@@ -28,9 +30,10 @@ bool slowDown(std::vector<StoppedNode>& nodes, ImpactMotion motion)
     {
         if (node.m_impact == NodeGroups::kNone) continue;
         Impact& impact = impacts[node.m_impact];
-        const bool isFree = node.m_mass > 0 && isFinite(node.m_place) && isFinite(node.m_velocity);
-        impact.m_isHeld = impact.m_isHeld || !isFree;
-        if (isFree) impact.m_whole.add(node.m_mass, node.m_place, node.m_velocity);
+        const bool moves = node.m_mass > 0 && isFinite(node.m_place) && isFinite(node.m_velocity);
+        impact.m_isHeld = impact.m_isHeld || node.m_isHeld || !moves;
+        impact.m_leastShare = std::min(impact.m_leastShare, node.m_share);
+        if (moves) impact.m_whole.add(node.m_mass, node.m_place, node.m_velocity);
     }
     bool anyFree = false;
     for (auto& impact : impacts)
@@ -38,25 +41,31 @@ bool slowDown(std::vector<StoppedNode>& nodes, ImpactMotion motion)
         impact.second.m_whole.compute(motion != ImpactMotion::Straight);
         anyFree = anyFree || !impact.second.m_isHeld;
     }
-    const auto impactOf = [&](const StoppedNode& node) -> Impact*
-    {
-        const auto found = impacts.find(node.m_impact);
-        return found == impacts.end() || found->second.m_isHeld ? nullptr : &found->second;
-    };
     for (StoppedNode& node : nodes)
     {
-        Impact* const impact = impactOf(node);
-        node.m_isHeld = !impact && node.m_impact != NodeGroups::kNone;
-        if (impact) node.m_velocity = node.m_velocity - impact->m_whole.velocityAt(node.m_place);
-        node.m_velocity = (impact && motion != ImpactMotion::Shares ? 0 : node.m_share) * node.m_velocity;
-        if (impact) impact->m_left.add(node.m_mass, node.m_place, node.m_velocity);
+        const auto found = impacts.find(node.m_impact);
+        node.m_isHeld = found != impacts.end() && found->second.m_isHeld;
+        if (!(node.m_mass > 0) || found == impacts.end()) continue;
+        Impact& impact = found->second;
+        if (node.m_isHeld)
+        {
+            node.m_velocity = impact.m_leastShare * node.m_velocity;
+            continue;
+        }
+        node.m_velocity = node.m_velocity - impact.m_whole.velocityAt(node.m_place);
+        node.m_velocity = (motion != ImpactMotion::Shares ? 0 : node.m_share) * node.m_velocity;
+        impact.m_left.add(node.m_mass, node.m_place, node.m_velocity);
     }
     for (auto& impact : impacts)
         impact.second.m_left.compute();
     for (StoppedNode& node : nodes)
-        if (const Impact* const impact = impactOf(node))
-            node.m_velocity =
-                node.m_velocity + impact->m_whole.velocityAt(node.m_place) - impact->m_left.velocityAt(node.m_place);
+    {
+        const auto found = impacts.find(node.m_impact);
+        if (found == impacts.end() || node.m_isHeld) continue;
+        const Impact& impact = found->second;
+        node.m_velocity =
+            node.m_velocity + impact.m_whole.velocityAt(node.m_place) - impact.m_left.velocityAt(node.m_place);
+    }
     return anyFree;
 }
 }  // namespace drape
