@@ -45,7 +45,8 @@ int indexIn(const btAlignedObjectArray<Item>& array, const Item* item)
     return static_cast<int>(item - &array[0]);
 }
 
-// Takes the body's faces as triangles, and the links to nodes without a face as lines: ropes and fringes.
+// Takes the body's faces as triangles, and the links to nodes without a face as lines: ropes and fringes. Bending links
+// would be chords beside a rope.
 void readTopology(const btSoftBody& soft, RecordedBody& body)
 {
     std::vector<bool> hasFace(static_cast<std::size_t>(soft.m_nodes.size()));
@@ -59,6 +60,7 @@ void readTopology(const btSoftBody& soft, RecordedBody& body)
     {
         const int ends[2] = {indexIn<btSoftBody::Node>(soft.m_nodes, soft.m_links[i].m_n[0]),
                              indexIn<btSoftBody::Node>(soft.m_nodes, soft.m_links[i].m_n[1])};
+        if (soft.m_links[i].m_bbending) continue;
         if (!hasFace[static_cast<std::size_t>(ends[0])] || !hasFace[static_cast<std::size_t>(ends[1])])
             body.m_lines.insert(body.m_lines.end(), ends, ends + 2);
     }

@@ -42,6 +42,15 @@ struct ScenePins
     }
 };
 
+// Nodes that are attached to an obstacle where they start.
+struct SceneAnchors
+{
+    std::vector<int> m_nodes;
+    std::size_t m_obstacle = 0;  // its index
+    bool m_collides = true;      // false: the whole cloth passes through the obstacle
+    double m_influence = 1;      // share of the distance between node and obstacle that a correction removes
+};
+
 // The generator of a cloth at rest, and its arguments.
 struct ClothShape
 {
@@ -49,7 +58,8 @@ struct ClothShape
     {
         Grid,  // makeClothGrid()
         Tube,  // makeClothTube(): m_columns around, m_size is the radius
-        Mesh   // from a file or arrays
+        Mesh,  // from a file or arrays
+        Rope   // makeRope()
     };
     Kind m_kind = Kind::Mesh;
     int m_columns = 0, m_rows = 0;
@@ -66,12 +76,18 @@ struct SceneCloth
     std::string m_name{};
     SceneMaterial m_material{};
     std::vector<double> m_nodeMasses{};  // kg; empty: every node has the same share of m_mass
-    double m_margin = -1;                // below 0: half of the scene's thickness
-    bool m_selfCollides = true;          // with itself and with other cloth for which it is on
-    bool m_restsAtStart = false;         // springs have their lengths from m_positions
-    Vector3 m_velocity{};                // at the start
+    std::vector<SceneAnchors> m_anchors{};
+    double m_pressure = 0;            // overpressure times volume of a closed mesh, N·m; Bullet's kPR
+    double m_volumeConservation = 0;  // pressure of a closed mesh by the volume that is missing, Pa/m³; kVC
+    double m_margin = -1;             // below 0: half of the scene's thickness
+    bool m_selfCollides = true;       // with itself and with other cloth for which it is on
+    bool m_restsAtStart = false;      // springs have their lengths from m_positions
+    Vector3 m_velocity{};             // at the start
 
     std::size_t nodeCount() const { return m_positions.size() / 3; }
+    bool isRope() const { return m_shape.m_kind == ClothShape::Kind::Rope; }
+    // Returns the links that show a rope, two nodes each. Triangles show other cloth.
+    std::vector<std::int32_t> lines() const { return isRope() ? m_rest.m_edgeSprings : std::vector<std::int32_t>(); }
     double massOf(std::size_t node) const
     {
         return m_nodeMasses.empty() ? m_mass / double(nodeCount()) : m_nodeMasses[node];

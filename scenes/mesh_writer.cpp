@@ -17,13 +17,16 @@ void appendLittle(std::string& bytes, const void* value)
         bytes.push_back(static_cast<char>((word >> shift) & 0xffu));
 }
 
-std::string asPly(const TriangleMesh& mesh)
+std::string asPly(const TriangleMesh& mesh, const std::vector<std::int32_t>& lines)
 {
     std::string bytes = "ply\nformat binary_little_endian 1.0\ncomment metres\nelement vertex " +
                         std::to_string(mesh.vertexCount()) +
                         "\nproperty float x\nproperty float y\nproperty float z\nelement face " +
-                        std::to_string(mesh.triangleCount()) + "\nproperty list uchar int vertex_indices\nend_header\n";
-    bytes.reserve(bytes.size() + 12 * mesh.vertexCount() + 13 * mesh.triangleCount());
+                        std::to_string(mesh.triangleCount()) + "\nproperty list uchar int vertex_indices\n";
+    if (!lines.empty())
+        bytes += "element edge " + std::to_string(lines.size() / 2) + "\nproperty int vertex1\nproperty int vertex2\n";
+    bytes += "end_header\n";
+    bytes.reserve(bytes.size() + 12 * mesh.vertexCount() + 13 * mesh.triangleCount() + 4 * lines.size());
     for (const float& value : mesh.m_positions)
         appendLittle(bytes, &value);
     for (std::size_t i = 0; i < mesh.m_triangles.size(); ++i)
@@ -31,10 +34,12 @@ std::string asPly(const TriangleMesh& mesh)
         if (i % 3 == 0) bytes.push_back(3);
         appendLittle(bytes, &mesh.m_triangles[i]);
     }
+    for (const std::int32_t& vertex : lines)
+        appendLittle(bytes, &vertex);
     return bytes;
 }
 
-std::string asObj(const TriangleMesh& mesh)
+std::string asObj(const TriangleMesh& mesh, const std::vector<std::int32_t>& lines)
 {
     std::string text = "# metres\n";
     char line[128];
@@ -50,14 +55,17 @@ std::string asObj(const TriangleMesh& mesh)
         std::snprintf(line, sizeof line, "f %d %d %d\n", c[0] + 1, c[1] + 1, c[2] + 1);
         text += line;
     }
+    for (std::size_t i = 0; i + 1 < lines.size(); i += 2)
+        text += "l " + std::to_string(lines[i] + 1) + " " + std::to_string(lines[i + 1] + 1) + "\n";
     return text;
 }
 }  // namespace
 
-bool writeMesh(const std::string& path, const TriangleMesh& mesh, std::string& error)
+bool writeMesh(const std::string& path, const TriangleMesh& mesh, std::string& error,
+               const std::vector<std::int32_t>& lines)
 {
     const bool obj = path.size() >= 4 && path.compare(path.size() - 4, 4, ".obj") == 0;
-    return writeFileAtomically(path, obj ? asObj(mesh) : asPly(mesh), error);
+    return writeFileAtomically(path, obj ? asObj(mesh, lines) : asPly(mesh, lines), error);
 }
 
 std::string frameName(const std::string& folder, const std::string& stem, int number)

@@ -1,7 +1,5 @@
 #include "float_environment.h"
 
-#include "bullet_plugin/core/platform/float_state.h"
-
 // Out of line, so that the compiler moves no computation across the change.
 namespace drape
 {
@@ -32,12 +30,8 @@ void DefaultFloats::restore() const noexcept
         restoreFloatState(m_callers);
         return;
     }
-    // Long doubles alone raise the older unit's flags. Its environment is set as a whole.
-    if (((x87Status() ^ m_x87Status) & kExceptionFlags) != 0)
-    {
-        const std::fexcept_t flags = static_cast<std::fexcept_t>(m_x87Status & kExceptionFlags);
-        std::fesetexceptflag(&flags, FE_ALL_EXCEPT);
-    }
+    // Long doubles, and MinGW's mathematics, raise the older unit's flags.
+    if (((x87Status() ^ m_x87Status) & kExceptionFlags) != 0) setX87(x87Control(), m_x87Status);
     setSseRegister(m_flags);
 }
 

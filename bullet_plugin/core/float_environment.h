@@ -7,7 +7,7 @@
 // the app's environment is the default one but for its flags, else some 100 ns.
 #pragma once
 
-#include <cfenv>
+#include "bullet_plugin/core/platform/float_state.h"
 
 namespace drape
 {
@@ -26,7 +26,7 @@ private:
     void save() noexcept;
     void restore() const noexcept;
 
-    std::fenv_t m_callers;           // unless m_isPlain
+    FloatState m_callers;            // unless m_isPlain
     unsigned m_flags = 0;            // SSE's register; if m_isPlain
     unsigned short m_x87Status = 0;  // if m_isPlain
     bool m_isPlain = false;          // the app's modes are the default ones

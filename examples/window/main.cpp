@@ -21,6 +21,7 @@
 #include "examples/window/renderer.h"
 #include "examples/window/simulation.h"
 #include "examples/window/window_scenes.h"
+#include "scenes/cloth_rope.h"
 #include "tools/cloth_drop/image.h"
 #include "tools/common/arguments.h"
 #include "tools/common/device_option.h"
@@ -30,7 +31,8 @@ namespace drape::window
 {
 namespace
 {
-constexpr float kGrabbed = 0.05f;  // share of the picture's height within which the mouse takes a node
+constexpr float kGrabbed = 0.05f;           // share of the picture's height within which the mouse takes a node
+constexpr double kLeastRopeRadius = 0.003;  // m
 
 // The window, with an OpenGL context that is current.
 class Window
@@ -137,6 +139,8 @@ private:
     {
         m_cloth = std::make_unique<GpuMesh>();
         m_cloth->setTriangles(m_simulation.world().mesh().m_triangles);
+        m_ropes = std::make_unique<GpuMesh>();
+        m_lines = m_simulation.world().lines();
         m_obstacles.clear();
         for (const SceneObstacle& obstacle : m_simulation.scene().m_obstacles)
         {
@@ -156,6 +160,13 @@ private:
             m_obstacles[i]->setPositions(at, count / 3);
             at += count;
         }
+    }
+    void placeRopes(const std::vector<float>& nodes)
+    {
+        const double radius = std::max(kLeastRopeRadius, 0.5 * m_simulation.scene().m_thickness);
+        const TriangleMesh tubes = tubesAround(nodes, m_lines, radius);
+        m_ropes->setTriangles(tubes.m_triangles);
+        m_ropes->setPositions(tubes.m_positions.data(), tubes.vertexCount());
     }
     void lookAtCloth()
     {
@@ -234,6 +245,7 @@ private:
         {
             m_renderer->draw(*m_obstacles[floor], {{0.56f, 0.60f, 0.66f}, {0.4f, 0.4f, 0.4f}, 1, false, false});
             m_renderer->drawShadow(*m_cloth);
+            m_renderer->drawShadow(*m_ropes);
         }
         for (std::size_t i = 0; i < floor; ++i)
         {
@@ -252,6 +264,7 @@ private:
             placeObstacles();
         const std::vector<float>& nodes = m_simulation.world().positions();
         m_cloth->setPositions(nodes.data(), nodes.size() / 3);
+        placeRopes(nodes);
         LineList lines;
         if (!m_simulation.isByBullet()) debugDraw(m_simulation.plugin(), lines, m_choices.m_draws);
         if (m_simulation.m_held.any())
@@ -267,6 +280,7 @@ private:
         m_renderer->draw(
             *m_cloth,
             {{0.27f, 0.47f, 0.85f}, {0.87f, 0.55f, 0.28f}, seesThrough ? 0.35f : 1.0f, m_choices.m_wires, true});
+        m_renderer->draw(*m_ropes, {{0.27f, 0.47f, 0.85f}, {0.27f, 0.47f, 0.85f}, 1, false, true});
         ImGui::Render();
         ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
     }
@@ -277,7 +291,8 @@ private:
     Choices m_choices;
     Camera m_camera;
     std::unique_ptr<Renderer> m_renderer;  // it and the meshes go before the window
-    std::unique_ptr<GpuMesh> m_cloth;
+    std::unique_ptr<GpuMesh> m_cloth, m_ropes;
+    std::vector<std::int32_t> m_lines;                  // links of ropes, two nodes each
     std::vector<std::unique_ptr<GpuMesh>> m_obstacles;  // in the scene's order
     btScalar m_grabDistance = 1;                        // m, from the camera
     bool m_keys[3] = {};                                // see isPressed()

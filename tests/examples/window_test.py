@@ -134,6 +134,14 @@ class Screenshots(unittest.TestCase):
         self.assertGreater(len(set(pixels)), 200)
         self.assertGreater(self.count(pixels, lambda r, g, b: b > r + 40), 0.02 * len(pixels), "no cloth")
 
+    def test_shows_ropes(self):
+        path = os.path.join(self.folder, "rope.json")
+        with open(path, "w", encoding="utf-8") as file:
+            file.write('{"cloths": [{"shape": {"type": "rope", "from": [0, 1, 0], "to": [1, 1, 0], "nodes": 9},'
+                       ' "mass": 1, "pins": [{"edges": ["x_min", "x_max"]}]}]}')
+        pixels = self.shoot("window_rope", "--scene", path, "--frames", "5")
+        self.assertGreater(self.count(pixels, lambda r, g, b: b > r + 40), 100, "no rope")
+
     def test_shows_bullets_own_collision(self):
         pixels = self.shoot("window_bullet", "--scene", "ball", "--frames", "5", "--detail", "1",
                             "--collision", "bullet")

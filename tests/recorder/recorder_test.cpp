@@ -257,6 +257,17 @@ TEST_F(RecorderTest, RopesAreLines)
     EXPECT_EQ(recorder.recording().m_bodies[0].m_lines.size(), 2u * 9);
 }
 
+TEST_F(RecorderTest, BendingLinksOfRopesAreNoLines)
+{
+    m_cloths.emplace_back(
+        btSoftBodyHelpers::CreateRope(m_world.getWorldInfo(), btVector3(0, 1, 0), btVector3(1, 1, 0), 8, 1));
+    m_cloths.back()->generateBendingConstraints(2);
+    m_world.addSoftBody(m_cloths.back().get());
+    Recorder recorder(m_world);
+    recorder.record();
+    EXPECT_EQ(recorder.recording().m_bodies[0].m_lines.size(), 2u * 9);
+}
+
 TEST_F(RecorderTest, FringesOfAClothAreLines)
 {
     btSoftBody& cloth = addCloth(1);

@@ -25,6 +25,10 @@ GRID = {"type": "grid", "columns": 3, "rows": 3, "size": 1}
 TRIANGLE = {"type": "mesh", "positions": [0, 0, 0, 1, 0, 0, 0, 1, 0], "triangles": [0, 1, 2]}
 SCENE = {"cloths": [{"shape": GRID, "pins": [{"nodes": [0]}]}],
          "obstacles": [{"shape": {"type": "box", "size": [1, 1, 1]}}]}
+TETRAHEDRON = {"type": "mesh", "positions": [0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1],
+               "triangles": [0, 2, 1, 0, 1, 3, 1, 2, 3, 0, 3, 2]}
+ROPE = {"type": "rope", "from": [0, 0, 0], "to": [1, 0, 0], "nodes": 3}
+POINTS = {"type": "rope", "positions": [0, 0, 0, 1, 0, 0]}
 KEYS = {"keyframes": [{"time": 0}, {"time": 1, "rotation": {"axis": [0, 1, 0], "angle": 1}}]}
 
 
@@ -46,7 +50,18 @@ def shape(kind, **keys):
     return changed("obstacles/0/shape", {"type": kind, **keys})
 
 
+def cloth(shape, **keys):
+    """Returns a scene of one cloth and an obstacle named box."""
+    return {"cloths": [{"shape": shape, **keys}],
+            "obstacles": [{"name": "box", "shape": {"type": "box", "size": [1, 1, 1]}}]}
+
+
 GOOD = [
+    cloth(ROPE, mass=1), cloth(POINTS, mass=1, material="silk"), cloth({**ROPE, "bending": True}, mass=1),
+    cloth(ROPE, mass=1, positions=[0, 0, 0, 1, 1, 0, 2, 0, 0], pins=[{"edges": ["x_min"]}]),
+    cloth(TETRAHEDRON, pressure=3), cloth(TETRAHEDRON, volume_conservation=50, pressure=0),
+    cloth(GRID, anchors=[]), cloth(GRID, anchors=[{"edges": ["x_min"], "obstacle": "box"}]),
+    cloth(ROPE, mass=1, anchors=[{"nodes": [2], "obstacle": "box", "collision": False, "influence": 0.5}]),
     SCENE, {"cloths": [{"shape": TRIANGLE}]}, changed("frames", 3.0), changed("gravity", [0, 0, 1.5]),
     changed("wind", {"velocity": [1, 0, 0], "drag": 0}), changed("materials", {"mine": {"base": "silk"}}),
     changed("cloths/0/material", {"base": "rubber", "density": 1}), changed("cloths/0/rest", "start"),
@@ -62,6 +77,16 @@ GOOD = [
 ]
 
 BAD = [
+    cloth(ROPE), cloth({"type": "rope"}, mass=1), cloth({**ROPE, "nodes": 1}, mass=1),
+    cloth({**ROPE, **POINTS}, mass=1), cloth({**POINTS, "nodes": 2}, mass=1),
+    cloth({"type": "rope", "from": [0, 0, 0], "nodes": 3}, mass=1), cloth({**ROPE, "bending": 0.1}, mass=1),
+    cloth({"type": "rope", "positions": [0, 0, 0]}, mass=1), cloth({**ROPE, "length": 1}, mass=1),
+    cloth(TETRAHEDRON, pressure=-1), cloth(TETRAHEDRON, volume_conservation="1"), cloth(GRID, pressure=1),
+    cloth(ROPE, mass=1, volume_conservation=1), cloth(GRID, anchors={}), cloth(GRID, anchors=[{"nodes": [0]}]),
+    cloth(GRID, anchors=[{"obstacle": "box"}]), cloth(GRID, anchors=[{"nodes": [0], "obstacle": 0}]),
+    cloth(GRID, anchors=[{"nodes": [0], "obstacle": "box", "influence": 0}]),
+    cloth(GRID, anchors=[{"nodes": [0], "obstacle": "box", "collision": 1}]),
+    cloth(GRID, anchors=[{"nodes": [0], "obstacle": "box", "motion": KEYS}]),
     [], 3, {}, changed("cloths", []), changed("cloths", {}), changed("frame", 3), changed("frames", 0),
     changed("frames", 2.5), changed("frames", "3"), changed("frames", True), changed("time_step", 0),
     changed("time_step", 2), changed("thickness", 0), changed("iterations", 1001), changed("gravity", [0, 1]),

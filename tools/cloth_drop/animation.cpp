@@ -32,9 +32,11 @@ std::vector<std::size_t> framesOf(const std::vector<const Recording*>& runs)
     return frames;
 }
 
-TriangleMesh clothAt(const Recording& run, std::size_t frame, std::size_t obstacleTriangles)
+PicturePanel panelAt(const Recording& run, std::size_t frame, std::size_t obstacleTriangles)
 {
-    TriangleMesh cloth;
+    PicturePanel panel;
+    panel.m_title = run.m_title;
+    TriangleMesh& cloth = panel.m_cloth;
     frame = std::min(frame, run.m_frameCount - 1);
     const bool anyRigid =
         std::any_of(run.m_bodies.begin(), run.m_bodies.end(), [](const RecordedBody& body) { return body.m_rigid; });
@@ -47,8 +49,10 @@ TriangleMesh clothAt(const Recording& run, std::size_t frame, std::size_t obstac
         cloth.m_positions.insert(cloth.m_positions.end(), positions, positions + body.frameSize());
         for (const std::int32_t node : body.m_triangles)
             cloth.m_triangles.push_back(first + node);
+        for (const std::int32_t node : body.m_lines)
+            panel.m_lines.push_back(first + node);
     }
-    return cloth;
+    return panel;
 }
 
 struct EncoderEnd
@@ -103,7 +107,7 @@ std::vector<PicturePanel> panelsAt(const std::vector<const Recording*>& runs, st
 {
     std::vector<PicturePanel> panels;
     for (const Recording* run : runs)
-        panels.push_back({clothAt(*run, frame, obstacleTriangles), run->m_title, ""});
+        panels.push_back(panelAt(*run, frame, obstacleTriangles));
     return panels;
 }
 }  // namespace
@@ -119,7 +123,7 @@ bool writeAnimation(const std::string& path, const std::vector<const Recording*>
     const std::vector<std::size_t> frames = framesOf(runs);
     const double frameMs = 1000 * runs.front()->m_frameTime;
     const TriangleMesh last = obstacleAt(frames.back());
-    const View view = viewOf(clothAt(*runs.front(), frames.back(), last.triangleCount()), last);
+    const View view = viewOf(panelAt(*runs.front(), frames.back(), last.triangleCount()).m_cloth, last);
     AnimationEncoder encoder;
     Image image(0, 0);
     int rowsBefore = 0;

@@ -115,6 +115,7 @@ PicturePanel panelOf(const NamedRun& run, const RunPlan& plan)
 {
     PicturePanel panel;
     panel.m_cloth = plan.m_subject.m_cloths;
+    panel.m_lines = plan.m_subject.m_lines;
     if (!run.m_record.m_lastPositions.empty()) panel.m_cloth.m_positions = run.m_record.m_lastPositions;
     panel.m_title = titleOf(run);
     if (run.m_record.m_capped) panel.m_title += ", step " + std::to_string(run.m_record.m_steps.size());

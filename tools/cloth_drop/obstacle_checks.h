@@ -1,6 +1,7 @@
 // The independent checks of a run against each of its obstacles, in the obstacle's frame (oracle/measure.h,
 // oracle/crossings.h).
 //
+// Cloth that passes through an obstacle because its anchors say so is not checked against it.
 // Positions are rounded to float32 in the frame of an obstacle that has another pose than the world.
 #pragma once
 
@@ -28,6 +29,7 @@ public:
 private:
     struct Check
     {
+        std::vector<std::size_t> m_nodes;  // the nodes that are checked against this obstacle
         PenetrationMeter m_meter;
         Crossings m_crossings;
     };

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "scenes/cloth_rope.h"
 #include "tools/cloth_drop/picture_label.h"
 #include "tools/cloth_drop/smooth_mesh.h"
 
@@ -24,6 +25,7 @@ constexpr std::size_t kSmoothTriangles =
     100000;                                    // a coarse cloth is drawn with at least so many: none looks like facets
 constexpr std::size_t kMeshTriangles = 20000;  // edges of larger cloths would hide the cloth
 constexpr double kEdgeWidth = 0.0011;          // half width of an edge in radii of the view
+constexpr double kRopeRadius = 0.005;          // radius of a rope in radii of the view
 constexpr double kPi = 3.14159265358979323846;
 constexpr double kFieldOfView = 30 * kPi / 180;
 
@@ -221,6 +223,20 @@ bool renderPanel(int height, const std::function<void(int)>& renderRowOf, const 
     return !givenUp;
 }
 
+// Adds the tubes of ropes, without edges.
+void addRopes(const PicturePanel& panel, double radius, ShadedMesh& shaded)
+{
+    const TriangleMesh tubes = tubesAround(panel.m_cloth.m_positions, panel.m_lines, radius);
+    const std::vector<Vector3> normals = vertexNormals(tubes);
+    const auto first = std::int32_t(shaded.m_mesh.vertexCount());
+    for (const std::int32_t vertex : tubes.m_triangles)
+        shaded.m_mesh.m_triangles.push_back(first + vertex);
+    std::vector<float>& positions = shaded.m_mesh.m_positions;
+    positions.insert(positions.end(), tubes.m_positions.begin(), tubes.m_positions.end());
+    shaded.m_normals.insert(shaded.m_normals.end(), normals.begin(), normals.end());
+    if (!shaded.m_edges.empty()) shaded.m_edges.resize(shaded.m_mesh.triangleCount());
+}
+
 ShadedMesh shadedCloth(const TriangleMesh& cloth)
 {
     int levels = 0;
@@ -253,7 +269,9 @@ bool drawPicture(const std::vector<PicturePanel>& panels, const TriangleMesh& ob
     for (int i = 0; i < count; ++i)
     {
         const PicturePanel& panel = panels[static_cast<std::size_t>(i)];
-        const RayScene scene(shadedCloth(panel.m_cloth), {obstacle, vertexNormals(obstacle), {}, true}, view);
+        ShadedMesh cloth = shadedCloth(panel.m_cloth);
+        addRopes(panel, kRopeRadius * view.m_radius, cloth);
+        const RayScene scene(std::move(cloth), {obstacle, vertexNormals(obstacle), {}, true}, view);
         if (!scene.good())
         {
             error = "cannot draw: Embree did not start";

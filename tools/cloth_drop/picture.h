@@ -3,6 +3,7 @@
 // picture on one machine. Some seconds for a cloth.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
@@ -19,6 +20,7 @@ struct PicturePanel
 {
     TriangleMesh m_cloth;
     std::string m_title, m_remark;
+    std::vector<std::int32_t> m_lines{};  // ropes: two vertices of the cloth each, drawn as thin tubes
 };
 
 struct PictureHooks  // any may be empty

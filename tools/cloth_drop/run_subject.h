@@ -22,14 +22,22 @@ struct ObstacleFrame
     std::vector<float> outOf(const std::vector<float>& points) const;
 };
 
+// A cloth that passes through an obstacle because its anchors say so: the obstacle's index, and the cloth's nodes.
+struct PassingCloth
+{
+    std::size_t m_obstacle, m_firstNode, m_lastNode;  // the last one is that after the cloth's
+};
+
 struct RunSubject
 {
     TriangleMesh m_cloths;                  // all of them at the start, one after the other
+    std::vector<std::int32_t> m_lines;      // links of ropes: two nodes of m_cloths each
     std::vector<float> m_rest;              // x y z per node, with the edges' lengths at rest
     std::vector<TriangleMesh> m_obstacles;  // each in its own frame
     std::vector<ObstacleFrame> m_starts;    // their frames at the start
     std::vector<std::string> m_names;       // obstacles, then cloths, for recordings; may be empty
     std::vector<bool> m_isShown;            // in pictures: all but planes, which have no end
+    std::vector<PassingCloth> m_passing;    // left out of the checks against their obstacles
     double m_thickness = 0;                 // m
     double m_dt = 0;                        // s, of a step of the run
     bool m_obstaclesMove = false;           // any of them may leave its start

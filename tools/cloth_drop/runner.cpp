@@ -80,12 +80,12 @@ bool runSimulation(Simulation& simulation, const RunSubject& subject, int steps,
     TriangleMesh lastFrame = subject.m_cloths;
     ObstacleChecks checks(subject);
     SelfIntersections self(lastFrame);
-    const StretchMeter stretch({subject.m_rest, lastFrame.m_triangles});
+    const StretchMeter stretch({subject.m_rest, lastFrame.m_triangles}, subject.m_lines);
     std::uint64_t hash = kHashStart;
     RunRecorder recorder(simulation, subject.m_dt, hooks);
     const bool frames = !framesFolder.empty();
     if (frames && !(writeMesh(framesFolder + "/obstacle.ply", subject.shown(subject.m_starts), error) &&
-                    writeMesh(frameName(framesFolder, "cloth", 0), lastFrame, error)))
+                    writeMesh(frameName(framesFolder, "cloth", 0), lastFrame, error, subject.m_lines)))
         return false;
     for (int number = 1; number <= steps; ++number)
     {
@@ -105,8 +105,9 @@ bool runSimulation(Simulation& simulation, const RunSubject& subject, int steps,
         recorder.record();
         if (hooks.m_afterStep) hooks.m_afterStep(number, step);
         record.m_steps.push_back(std::move(step));
-        const bool written = !frames || (writeMesh(frameName(framesFolder, "cloth", number), lastFrame, error) &&
-                                         writeObstacles(subject, record, framesFolder, number, error));
+        const bool written =
+            !frames || (writeMesh(frameName(framesFolder, "cloth", number), lastFrame, error, subject.m_lines) &&
+                        writeObstacles(subject, record, framesFolder, number, error));
         if (written && (number == steps || !hooks.m_goesOn || hooks.m_goesOn())) continue;
         record.m_capped = true;
         break;

@@ -122,10 +122,15 @@ RunSubject subjectOf(const ClothScene& scene)
         const auto first = std::int32_t(subject.m_cloths.vertexCount());
         for (const std::int32_t node : cloth.m_rest.m_mesh.m_triangles)
             subject.m_cloths.m_triangles.push_back(first + node);
+        for (const std::int32_t node : cloth.lines())
+            subject.m_lines.push_back(first + node);
         subject.m_cloths.m_positions.insert(subject.m_cloths.m_positions.end(), cloth.m_positions.begin(),
                                             cloth.m_positions.end());
         const std::vector<float>& rest = cloth.m_restsAtStart ? cloth.m_positions : cloth.m_rest.m_mesh.m_positions;
         subject.m_rest.insert(subject.m_rest.end(), rest.begin(), rest.end());
+        for (const SceneAnchors& anchors : cloth.m_anchors)
+            if (!anchors.m_collides)
+                subject.m_passing.push_back({anchors.m_obstacle, std::size_t(first), subject.m_cloths.vertexCount()});
         self = self || cloth.m_selfCollides;
     }
     for (const SceneObstacle& obstacle : scene.m_obstacles)

@@ -21,7 +21,7 @@ double lengthOf(const std::vector<float>& positions, const std::int32_t vertices
 }
 }  // namespace
 
-StretchMeter::StretchMeter(const TriangleMesh& cloth)
+StretchMeter::StretchMeter(const TriangleMesh& cloth, const std::vector<std::int32_t>& lines)
 {
     std::vector<std::pair<std::int32_t, std::int32_t>> pairs;
     for (std::size_t i = 0; i < cloth.m_triangles.size(); ++i)
@@ -29,6 +29,8 @@ StretchMeter::StretchMeter(const TriangleMesh& cloth)
         const std::int32_t a = cloth.m_triangles[i], b = cloth.m_triangles[i % 3 == 2 ? i - 2 : i + 1];
         pairs.emplace_back(std::min(a, b), std::max(a, b));
     }
+    for (std::size_t i = 0; i + 1 < lines.size(); i += 2)
+        pairs.emplace_back(std::min(lines[i], lines[i + 1]), std::max(lines[i], lines[i + 1]));
     std::sort(pairs.begin(), pairs.end());
     pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
     for (const auto& [a, b] : pairs)

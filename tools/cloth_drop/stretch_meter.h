@@ -18,8 +18,9 @@ struct MeshStretch
 class StretchMeter
 {
 public:
-    // Takes the edges of the mesh's triangles, each once, with their lengths. Edges without length are left out.
-    explicit StretchMeter(const TriangleMesh& cloth);
+    // Takes the edges of the mesh's triangles and the lines, two vertices each, once, with their lengths. Those without
+    // length are left out.
+    explicit StretchMeter(const TriangleMesh& cloth, const std::vector<std::int32_t>& lines = {});
     // positions: m, x y z per vertex. Returns zeros for a cloth without edges.
     MeshStretch measure(const std::vector<float>& positions) const;
 

@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include "scenes/cloth_mesh.h"
+#include "scenes/cloth_rope.h"
 #include "tools/common/suggestion.h"
 #include "tools/scene_file/materials.h"
 #include "tools/scene_file/scene_parts.h"
@@ -52,12 +53,17 @@ ClothGrid readTube(const JsonValue& value, ClothShape& shape)
 
 void readShape(const JsonValue& value, SceneContext& context, SceneCloth& cloth)
 {
-    const std::vector<std::string> types = {"grid", "tube", "mesh"};
+    const std::vector<std::string> types = {"grid", "tube", "mesh", "rope"};
     if (!value.json().is_object()) value.refuse("an object");
     if (!value.json().contains("type")) value.fail("the key 'type' is missing: one of " + joinedWords(types));
     const std::string type = JsonValue(value.json().at("type"), value.path() + "/type").word(types);
     if (type == "grid") cloth.m_rest = readGrid(value, cloth.m_shape);
     if (type == "tube") cloth.m_rest = readTube(value, cloth.m_shape);
+    if (type == "rope")
+    {
+        cloth.m_shape.m_kind = ClothShape::Kind::Rope;
+        cloth.m_rest = readRope(value);
+    }
     if (type == "mesh") cloth.m_rest = clothOfMesh(readMesh(JsonObject(value, kMeshKeys), context));
 }
 
@@ -83,9 +89,17 @@ void readPlaces(const JsonObject& object, SceneCloth& cloth)
     }
 }
 
-// A grid's and a tube's nodes have equal masses. Those of a mesh have masses by the areas around them.
+// A grid's and a tube's nodes have equal masses. Those of a mesh have masses by the areas around them, those of a rope
+// by the lengths beside them.
 void readMasses(const JsonObject& object, SceneCloth& cloth)
 {
+    if (cloth.isRope())
+    {
+        if (!object.has("mass")) object.value().fail("the key 'mass' is missing: a rope has no area");
+        object.read("mass", cloth.m_mass, kMass);
+        cloth.m_nodeMasses = massesByLength(cloth.m_rest.m_mesh.m_positions, cloth.m_mass);
+        return;
+    }
     const double area = areaOf(cloth.m_rest.m_mesh);
     cloth.m_mass = cloth.m_material.m_areaMass * area;
     object.read("mass", cloth.m_mass, kMass);
@@ -122,8 +136,9 @@ void readMaterials(const JsonValue& value, SceneContext& context)
 
 SceneCloth readCloth(const JsonValue& value, SceneContext& context)
 {
-    const JsonObject object(value, {"name", "shape", "position", "rotation", "positions", "rest", "material", "mass",
-                                    "margin", "self_collision", "velocity", "pins"});
+    const JsonObject object(value,
+                            {"name", "shape", "position", "rotation", "positions", "rest", "material", "mass", "margin",
+                             "self_collision", "velocity", "pins", "anchors", "pressure", "volume_conservation"});
     SceneCloth cloth;
     object.read("name", cloth.m_name);
     cloth.m_material = materialPresets().front().m_material;
@@ -131,12 +146,14 @@ SceneCloth readCloth(const JsonValue& value, SceneContext& context)
     readShape(object.at("shape"), context, cloth);
     readPlaces(object, cloth);
     readMasses(object, cloth);
+    readVolume(object, cloth);
     if (object.has("rest")) cloth.m_restsAtStart = object.at("rest").word({"shape", "start"}) == "start";
     object.read("margin", cloth.m_margin, kThicknesses);
     cloth.m_selfCollides = false;
     if (object.value().json().contains("self_collision")) object.read("self_collision", cloth.m_selfCollides);
     object.read("velocity", cloth.m_velocity, kSpeed);
     if (object.has("pins")) readPins(object.at("pins"), cloth);
+    if (object.has("anchors")) readAnchors(object.at("anchors"), context.m_file->m_scene.m_obstacles, cloth);
     return cloth;
 }
 }  // namespace drape

@@ -97,9 +97,9 @@ void addBox(const JsonValue& value, const SceneCloth& cloth, std::set<int>& node
     if (!any) value.fail("no node of the cloth starts in the box");
 }
 
-ScenePins readGroup(const JsonValue& value, const SceneCloth& cloth)
+// Reads the nodes of a group of pins or anchors.
+std::vector<int> readNodes(const JsonObject& object, const char* group, const SceneCloth& cloth)
 {
-    const JsonObject object(value, {"nodes", "corners", "edges", "box", "motion"});
     std::set<int> nodes;
     if (object.has("nodes"))
         object.at("nodes").each(
@@ -107,11 +107,42 @@ ScenePins readGroup(const JsonValue& value, const SceneCloth& cloth)
     if (object.has("corners")) addNamed(object.at("corners"), cornerNames(), cloth, nodes);
     if (object.has("edges")) addNamed(object.at("edges"), sideNames(), cloth, nodes);
     if (object.has("box")) addBox(object.at("box"), cloth, nodes);
-    if (nodes.empty()) value.fail("pins need nodes, corners, edges or a box");
+    if (nodes.empty()) object.value().fail(std::string(group) + " need nodes, corners, edges or a box");
+    return {nodes.begin(), nodes.end()};
+}
+
+ScenePins readPinGroup(const JsonValue& value, const SceneCloth& cloth)
+{
+    const JsonObject object(value, {"nodes", "corners", "edges", "box", "motion"});
     ScenePins pins;
-    pins.m_nodes.assign(nodes.begin(), nodes.end());
+    pins.m_nodes = readNodes(object, "pins", cloth);
     if (object.has("motion")) pins.m_motion = readMotion(object.at("motion"), pins.m_centre);
     return pins;
+}
+
+// Returns the index of the obstacle with the name.
+std::size_t readObstacleName(const JsonValue& value, const std::vector<SceneObstacle>& obstacles)
+{
+    std::vector<std::string> names;
+    for (const SceneObstacle& obstacle : obstacles)
+        if (!obstacle.m_name.empty()) names.push_back(obstacle.m_name);
+    if (names.empty()) value.fail("no obstacle has a name");
+    const std::string name = value.word(names);
+    if (std::count(names.begin(), names.end(), name) > 1) value.fail("several obstacles are named '" + name + "'");
+    const auto isNamed = [&](const SceneObstacle& obstacle) { return obstacle.m_name == name; };
+    return std::size_t(std::find_if(obstacles.begin(), obstacles.end(), isNamed) - obstacles.begin());
+}
+
+SceneAnchors readAnchorGroup(const JsonValue& value, const std::vector<SceneObstacle>& obstacles,
+                             const SceneCloth& cloth)
+{
+    const JsonObject object(value, {"nodes", "corners", "edges", "box", "obstacle", "collision", "influence"});
+    SceneAnchors anchors;
+    anchors.m_nodes = readNodes(object, "anchors", cloth);
+    anchors.m_obstacle = readObstacleName(object.at("obstacle"), obstacles);
+    object.read("collision", anchors.m_collides);
+    object.read("influence", anchors.m_influence, {1e-3, 1});
+    return anchors;
 }
 }  // namespace
 
@@ -121,10 +152,29 @@ void readPins(const JsonValue& value, SceneCloth& cloth)
     value.each(0,
                [&](const JsonValue& item)
                {
-                   const ScenePins pins = readGroup(item, cloth);
+                   const ScenePins pins = readPinGroup(item, cloth);
                    for (const int node : pins.m_nodes)
                        if (!taken.insert(node).second) item.fail("node " + std::to_string(node) + " is pinned twice");
                    cloth.m_pins.push_back(pins);
+               });
+}
+
+void readAnchors(const JsonValue& value, const std::vector<SceneObstacle>& obstacles, SceneCloth& cloth)
+{
+    std::set<int> pinned, taken;
+    for (const ScenePins& pins : cloth.m_pins)
+        pinned.insert(pins.m_nodes.begin(), pins.m_nodes.end());
+    value.each(0,
+               [&](const JsonValue& item)
+               {
+                   const SceneAnchors anchors = readAnchorGroup(item, obstacles, cloth);
+                   for (const int node : anchors.m_nodes)
+                   {
+                       const std::string name = "node " + std::to_string(node);
+                       if (pinned.count(node) > 0) item.fail(name + " is pinned and cannot be anchored");
+                       if (!taken.insert(node).second) item.fail(name + " is anchored twice");
+                   }
+                   cloth.m_anchors.push_back(anchors);
                });
 }
 }  // namespace drape

@@ -63,6 +63,9 @@ void readBodies(const JsonObject& object, SceneContext& context, ClothScene& sce
 {
     bool selfCollision = false;
     object.read("self_collision", selfCollision);
+    if (object.has("obstacles"))
+        object.at("obstacles")
+            .each(0, [&](const JsonValue& item) { scene.m_obstacles.push_back(readObstacle(item, context)); });
     std::size_t nodes = 0;
     object.at("cloths").each(1,
                              [&](const JsonValue& item)
@@ -73,9 +76,6 @@ void readBodies(const JsonObject& object, SceneContext& context, ClothScene& sce
                                  nodes += scene.m_cloths.back().nodeCount();
                                  if (nodes > std::size_t(kMostNodes)) item.fail("the cloths have too many nodes");
                              });
-    if (object.has("obstacles"))
-        object.at("obstacles")
-            .each(0, [&](const JsonValue& item) { scene.m_obstacles.push_back(readObstacle(item, context)); });
 }
 
 void readDocument(const std::string& text, const std::string& path, SceneFile& file)

@@ -43,6 +43,13 @@ SceneMotion readMotion(const JsonValue& value, Vector3& centre);
 
 // Reads the pins of a cloth whose nodes are there already.
 void readPins(const JsonValue& value, SceneCloth& cloth);
+// Reads the anchors of a cloth whose pins are there already, and the obstacles.
+void readAnchors(const JsonValue& value, const std::vector<SceneObstacle>& obstacles, SceneCloth& cloth);
+
+// Reads the shape of a rope, with its nodes at rest.
+ClothGrid readRope(const JsonValue& value);
+// Reads the keys pressure and volume_conservation, which may be missing. Turns the triangles outwards if one is there.
+void readVolume(const JsonObject& object, SceneCloth& cloth);
 
 SceneCloth readCloth(const JsonValue& value, SceneContext& context);
 SceneObstacle readObstacle(const JsonValue& value, SceneContext& context);

@@ -112,6 +112,12 @@ SceneJson clothShape(const SceneCloth& cloth)
                 {"rows", shape.m_rows},
                 {"radius", shape.m_size},
                 {"height", shape.m_height}};
+    if (cloth.isRope())
+    {
+        SceneJson json = {{"type", "rope"}, {"positions", asJson(cloth.m_rest.m_mesh.m_positions)}};
+        if (!cloth.m_rest.m_bendingSprings.empty()) json["bending"] = true;
+        return json;
+    }
     return meshJson(cloth.m_rest.m_mesh);
 }
 
@@ -142,6 +148,14 @@ SceneJson asJson(const ScenePins& pins, const SceneFile& file)
     return json;
 }
 
+SceneJson asJson(const SceneAnchors& anchors, const SceneFile& file)
+{
+    SceneJson json = {{"nodes", anchors.m_nodes}, {"obstacle", file.m_scene.m_obstacles[anchors.m_obstacle].m_name}};
+    if (!anchors.m_collides) json["collision"] = false;
+    if (anchors.m_influence != 1) json["influence"] = anchors.m_influence;
+    return json;
+}
+
 SceneJson asJson(const SceneCloth& cloth, const SceneFile& file)
 {
     SceneJson json;
@@ -156,6 +170,10 @@ SceneJson asJson(const SceneCloth& cloth, const SceneFile& file)
     if (!isZero(cloth.m_velocity)) json["velocity"] = asJson(cloth.m_velocity);
     for (const ScenePins& pins : cloth.m_pins)
         json["pins"].push_back(asJson(pins, file));
+    for (const SceneAnchors& anchors : cloth.m_anchors)
+        json["anchors"].push_back(asJson(anchors, file));
+    if (cloth.m_pressure > 0) json["pressure"] = cloth.m_pressure;
+    if (cloth.m_volumeConservation > 0) json["volume_conservation"] = cloth.m_volumeConservation;
     return json;
 }
 

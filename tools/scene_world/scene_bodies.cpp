@@ -6,6 +6,8 @@
 #include <BulletCollision/CollisionShapes/btHeightfieldTerrainShape.h>
 #include <BulletCollision/Gimpact/btGImpactShape.h>
 
+#include "scenes/mesh_volume.h"
+
 namespace drape
 {
 namespace
@@ -120,6 +122,23 @@ void place(btRigidBody& body, const btTransform& pose)
     body.setWorldTransform(pose);
     body.setInterpolationWorldTransform(pose);
 }
+// Bending springs of ropes are no solid links, or the rope could not bend around an edge.
+void markBending(btSoftBody& body, const SceneCloth& cloth)
+{
+    if (!cloth.isRope()) return;
+    for (int i = int(cloth.m_rest.m_edgeSprings.size() / 2); i < body.m_links.size(); ++i)
+        body.m_links[i].m_bbending = -1;  // a field of one bit
+}
+
+// Sets pressure and volume. btSoftBody::setPose() would take the springs' lengths from where the nodes are.
+void setVolume(btSoftBody& body, const SceneCloth& cloth, const std::vector<float>& rest)
+{
+    body.m_cfg.kPR = btScalar(cloth.m_pressure);
+    body.m_cfg.kVC = btScalar(cloth.m_volumeConservation);
+    if (!(cloth.m_volumeConservation > 0)) return;
+    body.m_pose.m_bvolume = true;
+    body.m_pose.m_volume = btScalar(volumeOf({rest, cloth.m_rest.m_mesh.m_triangles}));
+}
 }  // namespace
 
 void updateButLengths(btSoftBody& body)
@@ -158,11 +177,13 @@ std::unique_ptr<btSoftBody> makeClothBody(btSoftBodyWorldInfo& info, const Cloth
     const std::vector<float>& rest = cloth.m_restsAtStart ? cloth.m_positions : cloth.m_rest.m_mesh.m_positions;
     addSprings(body, rest, cloth.m_rest.m_edgeSprings, edges);
     addSprings(body, rest, cloth.m_rest.m_bendingSprings, bending);
+    markBending(body, cloth);
     for (const ScenePins& pins : cloth.m_pins)
         for (const int node : pins.m_nodes)
             body.setMass(node, 0);
     updateButLengths(body);
     configure(body, scene, cloth);
+    setVolume(body, cloth, rest);
     if (length(cloth.m_velocity) > 0) body.setVelocity(vectorOf(cloth.m_velocity));
     return owned;
 }

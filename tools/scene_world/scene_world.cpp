@@ -73,8 +73,13 @@ SceneWorld::~SceneWorld()
 btSoftBody& SceneWorld::addCloth(const SceneCloth& cloth)
 {
     m_cloths.push_back(makeClothBody(m_world.getWorldInfo(), m_scene, cloth));
-    m_world.addSoftBody(m_cloths.back().get());
-    return *m_cloths.back();
+    btSoftBody& body = *m_cloths.back();
+    for (const SceneAnchors& anchors : cloth.m_anchors)
+        for (const int node : anchors.m_nodes)
+            body.appendAnchor(node, m_obstacles[anchors.m_obstacle].m_body.get(), !anchors.m_collides,
+                              btScalar(anchors.m_influence));
+    m_world.addSoftBody(&body);
+    return body;
 }
 
 void SceneWorld::addObstacle(const SceneObstacle& obstacle)
@@ -134,6 +139,19 @@ TriangleMesh SceneWorld::mesh() const
             all.m_triangles.push_back(first + node);
         all.m_positions.insert(all.m_positions.end(), cloth.m_positions.begin(), cloth.m_positions.end());
         first += std::int32_t(cloth.m_positions.size() / 3);
+    }
+    return all;
+}
+
+std::vector<std::int32_t> SceneWorld::lines() const
+{
+    std::vector<std::int32_t> all;
+    std::int32_t first = 0;
+    for (const SceneCloth& cloth : m_scene.m_cloths)
+    {
+        for (const std::int32_t node : cloth.lines())
+            all.push_back(first + node);
+        first += std::int32_t(cloth.nodeCount());
     }
     return all;
 }

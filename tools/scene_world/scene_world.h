@@ -49,6 +49,8 @@ public:
     btTransform obstaclePose(std::size_t index) const { return m_obstacles[index].m_body->getWorldTransform(); }
     // Returns all cloths as one mesh, and their nodes where they are, x y z each, m.
     TriangleMesh mesh() const;
+    // Returns the links of ropes, two nodes of mesh() each.
+    std::vector<std::int32_t> lines() const;
     const std::vector<float>& positions();
     // Appends the obstacles' vertices where they are, x y z each, m.
     void addObstaclePositions(std::vector<float>& positions) const;

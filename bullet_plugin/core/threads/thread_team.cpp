@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cfenv>
 #include <chrono>
 #include <exception>
 #include <limits>
@@ -10,7 +9,6 @@
 
 #include "bullet_plugin/core/float_environment.h"
 #include "bullet_plugin/core/platform/compiler.h"
-#include "bullet_plugin/core/platform/float_state.h"
 #include "bullet_plugin/core/platform/platform.h"
 
 namespace drape
@@ -123,7 +121,7 @@ void ThreadTeam::handToApp()
 // Runs on any thread, perhaps after others have claimed everything.
 void ThreadTeam::workForApp(std::size_t thread)
 {
-    std::fenv_t apps;
+    FloatState apps;
     saveFloatState(apps);
     workOn(static_cast<unsigned>(thread % m_size), true);
     restoreFloatState(apps);

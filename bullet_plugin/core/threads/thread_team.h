@@ -15,7 +15,6 @@
 #pragma once
 
 #include <atomic>
-#include <cfenv>
 #include <condition_variable>
 #include <cstddef>
 #include <cstdint>
@@ -26,6 +25,7 @@
 #include <thread>
 #include <vector>
 
+#include "bullet_plugin/core/platform/float_state.h"
 #include "drape/settings.h"
 
 namespace drape
@@ -99,7 +99,7 @@ private:
     // Written before the items are offered, and unchanged until all of them are done.
     Call m_call = nullptr;
     const void* m_context = nullptr;
-    std::fenv_t m_environment;  // the caller's rounding mode and treatment of subnormals, for every helper
+    FloatState m_environment;  // the caller's rounding mode and treatment of subnormals, for every helper
 
     std::unique_ptr<Stretch[]> m_stretches;  // by thread, the caller's first
     std::atomic<std::uint32_t> m_job{0};     // number of the last one offered
