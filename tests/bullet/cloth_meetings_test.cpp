@@ -149,6 +149,46 @@ struct LoadedLayers : PlateAndBox, Layers
 
     btRigidBody *m_floor = nullptr, *m_box = nullptr;
 };
+
+// Free sheets without gravity, made one by one.
+struct FreeSheets : Layers
+{
+    explicit FreeSheets(const Settings& settings = hostSettings()) : Layers(settings, 0, 0) { turnGravityOff(); }
+    ~FreeSheets()
+    {
+        for (const std::unique_ptr<btSoftBody>& body : m_bodies)
+            m_world.world().removeSoftBody(body.get());
+    }
+    // Adds a sheet of n x n nodes from centre - u - v to centre + u + v, that margins of 5 mm keep apart.
+    btSoftBody& add(const btVector3& centre, const btVector3& u, const btVector3& v, int n, btScalar mass)
+    {
+        m_bodies.emplace_back(btSoftBodyHelpers::CreatePatch(m_world.world().getWorldInfo(), centre - u - v,
+                                                             centre + u - v, centre - u + v, centre + u + v, n, n, 0,
+                                                             true));
+        btSoftBody& cloth = *m_bodies.back();
+        cloth.getCollisionShape()->setMargin(0.005f);
+        cloth.setTotalMass(mass);
+        cloth.m_cfg.piterations = 5;
+        m_world.world().addSoftBody(&cloth);
+        m_plugin.setSelfCollision(cloth, true);
+        m_cloths.push_back(&cloth);
+        return cloth;
+    }
+
+    std::vector<std::unique_ptr<btSoftBody>> m_bodies;
+};
+
+// Returns the length of the body's longest link, in multiples of that at rest.
+btScalar longestOf(const btSoftBody& cloth)
+{
+    btScalar most = 0;
+    for (int i = 0; i < cloth.m_links.size(); ++i)
+    {
+        const btSoftBody::Link& link = cloth.m_links[i];
+        most = std::max(most, (link.m_n[0]->m_x - link.m_n[1]->m_x).length() / link.m_rl);
+    }
+    return most;
+}
 }  // namespace
 
 TEST(ClothMeetings, FiltersWorkFromBothSides)
@@ -272,22 +312,10 @@ TEST(ClothMeetings, TanglesAreKeptFromEachOther)
                                     {{0.03f, -0.3f, 0.01f}, {0.2f, 0.02f, 0}, {0, 0.35f, 0.03f}},
                                     {{0.01f, 0.5f, 0.02f}, {0.1f, 0.03f, 0}, {0, 0.02f, 0.1f}},
                                     {{0.02f, 0.52f, 0.03f}, {0.05f, 0, 0.01f}, {0, 0.05f, 0}}};
-    Layers layers(hostSettings(), 0, 0);
-    layers.turnGravityOff();
-    std::vector<std::unique_ptr<btSoftBody>> bodies;
+    FreeSheets layers;
     for (int k = 0; k < 4; ++k)
     {
-        const btVector3 &centre = sheets[k][0], &u = sheets[k][1], &v = sheets[k][2];
-        bodies.emplace_back(btSoftBodyHelpers::CreatePatch(layers.m_world.world().getWorldInfo(), centre - u - v,
-                                                           centre + u - v, centre - u + v, centre + u + v, 2, 2, 0,
-                                                           true));
-        btSoftBody& cloth = *bodies.back();
-        cloth.getCollisionShape()->setMargin(0.005f);
-        cloth.setTotalMass(0.05f);
-        cloth.m_cfg.piterations = 5;
-        layers.m_world.world().addSoftBody(&cloth);
-        layers.m_plugin.setSelfCollision(cloth, true);
-        layers.m_cloths.push_back(&cloth);
+        btSoftBody& cloth = layers.add(sheets[k][0], sheets[k][1], sheets[k][2], 2, 0.05f);
         if (k < 2)
             pin(cloth);
         else
@@ -301,8 +329,93 @@ TEST(ClothMeetings, TanglesAreKeptFromEachOther)
         for (const auto& pair : check.find(layers.positions()))
             EXPECT_EQ(pair.first < 4, pair.second < 4) << step;
     }
-    for (const std::unique_ptr<btSoftBody>& body : bodies)
-        layers.m_world.world().removeSoftBody(body.get());
+}
+
+// A fast sheet knocks on another one, below which a box is out of reach of where that would have gone by itself.
+TEST(ClothMeetings, ClothThatIsKnockedOnPassesNoBox)
+{
+    for (const Solver solver : {Solver::Auto, Solver::Bullet})
+    {
+        const btVector3 half(0.05f, 0.01f, 0.05f);
+        btBoxShape shape(half);
+        shape.setMargin(0.005f);
+        Settings settings = hostSettings();
+        settings.m_solver = solver;
+        FreeSheets sheets(settings);
+        btSoftBody& lower = sheets.add({0, 0, 0}, {1, 0, 0}, {0, 0, 1}, 3, 0.05f);
+        btSoftBody& upper = sheets.add({0, 0.05f, 0}, {0.2f, 0, 0}, {0, 0, 0.2f}, 5, 1);
+        lower.m_cfg.kDP = upper.m_cfg.kDP = 0;
+        btTransform pose = btTransform::getIdentity();
+        pose.setOrigin(btVector3(0.3f, -0.35f, 0.05f));
+        sheets.m_world.addObstacle(shape, pose);
+        sheets.m_world.step();
+        upper.setVelocity(btVector3(0, -30, 0));
+        EXPECT_EQ(sheets.run(1), 0u);
+        EXPECT_EQ(meetingBox(lower, pose, half), 0u);
+        for (int i = 0; i < lower.m_nodes.size(); ++i)
+            EXPECT_GT(lower.m_nodes[i].m_x.y(), pose.getOrigin().y()) << i;
+        EXPECT_NE(sheets.m_status & kStepMotionHeldBack, 0u);
+    }
+}
+
+TEST(ClothMeetings, FastClothWakesClothBeforeItHitsIt)
+{
+    FreeSheets sheets;
+    btSoftBody& asleep = sheets.add({0, 0, 0}, {0.3f, 0, 0}, {0, 0, 0.3f}, 7, 0.1f);
+    btSoftBody& fast = sheets.add({0.02f, 0.3f, 0.01f}, {0.2f, 0.02f, 0}, {0, 0.01f, 0.2f}, 5, 0.1f);
+    sheets.m_world.step(2);
+    asleep.forceActivationState(ISLAND_SLEEPING);
+    fast.setVelocity(btVector3(0, -20, 0));
+    const btVector3 before = sheets.momentum();
+    EXPECT_EQ(sheets.run(10), 0u);
+    EXPECT_TRUE(asleep.isActive());
+    EXPECT_LT((sheets.momentum() - before).length(), 1e-4f * before.length());
+}
+
+// Anchors to a body that does not yield hold cloth as pins do.
+TEST(ClothMeetings, AnchoredClothIsStretchedNoMoreThanPinnedCloth)
+{
+    btScalar longest[2] = {0, 0};
+    for (const bool anchored : {false, true})
+    {
+        btBoxShape shape(btVector3(0.01f, 0.01f, 0.01f));
+        FreeSheets sheets;
+        btSoftBody& hung = sheets.add({0, 0, 0}, {0.3f, 0, 0}, {0, 0, 0.3f}, 7, 0.1f);
+        btSoftBody& fast = sheets.add({0.02f, 0.1f, 0.01f}, {0.2f, 0.02f, 0}, {0, 0.01f, 0.2f}, 5, 0.3f);
+        for (const int corner : {0, 6, 42, 48})
+        {
+            btTransform pose = btTransform::getIdentity();
+            pose.setOrigin(hung.m_nodes[corner].m_x + btVector3(0, 1, 0));
+            if (anchored)
+                hung.appendAnchor(corner, btRigidBody::upcast(&sheets.m_world.addKinematic(shape, pose)), true);
+            else
+                hung.setMass(corner, 0);
+        }
+        fast.setVelocity(btVector3(0, -20, 0));
+        for (int step = 0; step < 30; ++step)
+        {
+            EXPECT_EQ(sheets.run(1), 0u);
+            longest[anchored] = std::max(longest[anchored], longestOf(hung));
+        }
+    }
+    EXPECT_LT(longest[1], 1.5f * longest[0]);
+}
+
+TEST(ClothMeetings, ShortStepsDoNotThrowTanglesApart)
+{
+    FreeSheets sheets;
+    sheets.add({0, 0, 0}, {0.3f, 0, 0}, {0, 0, 0.3f}, 7, 0.1f);
+    btSoftBody& crossing = sheets.add({0.25f, 0, 0.01f}, {0.1f, 0.05f, 0}, {0, 0, 0.2f}, 5, 0.1f);
+    EXPECT_GT(sheets.meeting(), 0u);
+    btScalar fastest = 0;
+    for (int step = 0; step < 10; ++step)
+    {
+        sheets.m_world.world().stepSimulation(1e-3f, 0);
+        for (int i = 0; i < crossing.m_nodes.size(); ++i)
+            fastest = std::max(fastest, crossing.m_nodes[i].m_v.length());
+    }
+    EXPECT_GT(fastest, 0);
+    EXPECT_LE(fastest, 0.5f);  // m/s; the push alone gives 0.12
 }
 
 TEST(ClothMeetings, WhatGoesBeyondTheLimitsIsReported)

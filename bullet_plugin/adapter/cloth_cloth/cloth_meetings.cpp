@@ -13,8 +13,8 @@ namespace drape
 {
 namespace
 {
-// Greatest way in a step of a node whose triangles intersect others, as a share of the thickness.
-constexpr float kPushedShare = 0.2f;
+// Greatest way in a step of a node whose triangles intersect others, and in a second, as shares of the thickness.
+constexpr float kPushedShare = 0.2f, kPushedPerSecond = 12;
 
 // Maximum times that the guard is applied to let nodes that stopped each other go on together.
 constexpr int kMostTurns = 8;
@@ -24,6 +24,14 @@ constexpr int kTurnsWithShares = 2;
 btVector3 vectorOf(const double v[3])
 {
     return btVector3(btScalar(v[0]), btScalar(v[1]), btScalar(v[2]));
+}
+
+// Returns whether the body is anchored to something that does not yield.
+bool hangs(const btSoftBody& body)
+{
+    for (int i = 0; i < body.m_anchors.size(); ++i)
+        if (body.m_anchors[i].m_body->isStaticOrKinematicObject()) return true;
+    return false;
 }
 
 // Gives a node at least the speed at which it was pushed in the step, along the push, so that its neighbours follow.
@@ -395,6 +403,12 @@ bool ClothMeetings::hasRows(const SolverNodes& nodes) const
                        [&](const Member& member) { return member.m_nodes == &nodes && member.m_hasRows; });
 }
 
+// Returns the time that passes for a node of the set in the step, s.
+btScalar ClothMeetings::timeOf(std::size_t node) const
+{
+    return m_members[m_set.memberOf(node)].m_body->m_sst.sdt;
+}
+
 // Moves the ends of triangles that started intersecting, once in a step. Their velocities stay.
 void ClothMeetings::pushApart()
 {
@@ -403,7 +417,8 @@ void ClothMeetings::pushApart()
     {
         const std::size_t pair = i - i % 6;
         const float thickness = m_set.thicknessOf(m_set.memberOf(m_meeting[pair]), m_set.memberOf(m_meeting[pair + 3]));
-        most[m_meeting[i]] = std::min(most[m_meeting[i]], double(kPushedShare * thickness));
+        const double share = std::min(double(kPushedShare), kPushedPerSecond * double(timeOf(m_meeting[i])));
+        most[m_meeting[i]] = std::min(most[m_meeting[i]], share * thickness);
     }
     m_push.compute(m_wasPushed ? std::vector<std::uint32_t>() : m_meeting, m_set.start(), m_isHeld, most);
     m_wasPushed = true;
@@ -452,9 +467,11 @@ GuardResult ClothMeetings::applyGuard(bool carries, const BodySet& fixed)
     m_impacts.clear(m_set.nodeCount());
     BodySet held = fixed;
     for (std::size_t i = 0; i < m_members.size(); ++i)
-        if (std::count(m_isHeld.begin() + std::ptrdiff_t(m_set.firstNode(i)),
-                       m_isHeld.begin() + std::ptrdiff_t(m_set.firstNode(i + 1)), 1) > 0)
-            held.insert(m_members[i].m_body);
+    {
+        const auto first = m_isHeld.begin() + std::ptrdiff_t(m_set.firstNode(i));
+        const auto last = m_isHeld.begin() + std::ptrdiff_t(m_set.firstNode(i + 1));
+        if (std::find(first, last, 1) != last || hangs(*m_members[i].m_body)) held.insert(m_members[i].m_body);
+    }
     for (int turn = 1;; ++turn)
     {
         const std::vector<float> whole(m_set.end(), m_set.end() + 3 * m_set.nodeCount());
@@ -482,7 +499,7 @@ bool ClothMeetings::slowDown(const std::vector<float>& whole, const BodySet& hel
     std::vector<StoppedNode> speeds, ways;
     const auto read = [&](const Member& member, const btSoftBody::Node& node, std::size_t index)
     {
-        const bool moves = !m_isHeld[index] && movableInverseMass(node) > 0 && !m_guard.isCarried(index);
+        const bool moves = !m_isHeld[index] && !m_guard.isCarried(index);
         const Vec3d start = pointAt(m_set.start(), index);
         speeds.push_back({start, wideOf(node.m_v), moves ? 1 / double(node.m_im) : 0, m_guard.shares()[index],
                           m_impacts.groupOf(index), held.count(member.m_body) > 0});

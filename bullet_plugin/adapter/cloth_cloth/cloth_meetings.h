@@ -92,6 +92,7 @@ private:
     bool isGuarded(const std::uint32_t nodes[4]) const;
     void pushApart();
     bool isPushed(std::size_t node) const;
+    btScalar timeOf(std::size_t node) const;
 
     PluginState& m_state;
     std::vector<Member> m_members;

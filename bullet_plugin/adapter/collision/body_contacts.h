@@ -74,6 +74,7 @@ struct BodyContacts
     bool m_heldTogether = false;         // since the last detection, see stretch.h
     bool m_obstacleJumps = false;        // an obstacle moves farther in the step than its size, or turns far
     bool m_hasDeformedPair = false;      // an obstacle's vertices move in the step
+    bool m_isStopped = false;            // by the last checkOffPath()
     bool m_hasDynamicPair = false;       // an obstacle is a dynamic body, which the cloth pushes
     bool m_isOnDevice = false;           // see kept_bodies.h
     bool m_meetsSurface = false;         // the host must solve it: a path meets a surface, or the like
@@ -100,7 +101,7 @@ struct BodyContacts
         m_contacts.m_hardness = float(body->m_cfg.kKHR);
         m_contacts.m_perSecond = float(body->m_sst.isdt);
         m_contacts.m_undamped = float(1 - body->m_cfg.kDP);
-        m_leftOut = m_heldTogether = m_obstacleJumps = m_hasDeformedPair = m_hasDynamicPair = false;
+        m_leftOut = m_heldTogether = m_obstacleJumps = m_hasDeformedPair = m_hasDynamicPair = m_isStopped = false;
         m_isOnDevice = m_meetsSurface = m_isOffPath = false;
         m_tangled.clear();
         m_wasTangled = false;

@@ -51,6 +51,8 @@ public:
     // their predicted paths. Ends those paths before anything that they would have passed. Returns these bodies, with
     // their contacts along the paths.
     std::vector<BodyContacts*> checkOffPath();
+    // Adds the bodies that the last checkOffPath() stopped before obstacles that do not yield.
+    void addStopped(BodySet& bodies) const;
     // Has checkOffPath() check the body.
     void watch(const btSoftBody& body);
     // Detects along the bodies' real paths, which end at their current positions.

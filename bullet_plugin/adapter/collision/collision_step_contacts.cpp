@@ -248,9 +248,16 @@ bool CollisionStep::cutOffPath(Cut cut)
     {
         if (!m_bodies[i].m_isOffPath || !cutAtImpactsOf(m_bodies[i], cut, nullptr)) continue;
         m_mirrors[i]->watch(true);
+        m_bodies[i].m_isStopped = true;
         any = true;
     }
     return any;
+}
+
+void CollisionStep::addStopped(BodySet& bodies) const
+{
+    for (const BodyContacts& body : m_bodies)
+        if (body.m_isStopped && !body.m_hasDynamicPair) bodies.insert(body.m_body);
 }
 
 // Returns whether cloth beside dynamic obstacles ends the last detection's paths behind a surface, however short these
@@ -448,6 +455,7 @@ std::vector<BodyContacts*> CollisionStep::checkOffPath()
         body.m_isOffPath = !body.m_isOnDevice &&
                            (mayHavePassed || m_mirrors[i]->isWatched() || contacts.m_limit.anyOffPath(body.nodes()));
         m_mirrors[i]->watch(false);
+        body.m_isStopped = false;
         if (body.m_isOffPath) bodies.push_back(&body);
     }
     if (bodies.empty()) return {};

@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <iterator>
 
+#include "LinearMath/btAabbUtil2.h"
+#include "bullet_plugin/adapter/cloth_cloth/soft_body_filters.h"
 #include "bullet_plugin/adapter/motion/motion_bounds.h"
 #include "bullet_plugin/adapter/motion/node_tree.h"
 #include "bullet_plugin/adapter/motion/prediction.h"
@@ -150,6 +152,7 @@ void SoftBodySolver::Work::beginStep(btScalar dt, std::vector<StepObstacle>& obs
     listTaken();
     motions.beginStep(dt, [this](const btCollisionObject& object, const btTransform& map, btScalar slack)
                       { return m_state.movedAlong(m_taken, object, map, slack); });
+    wakeHit(dt);
     obstacles = wakeReached(motions);
     listPredicted();
     m_parts.m_mirrorMs = watch.lapMs();
@@ -231,6 +234,37 @@ std::vector<StepObstacle> SoftBodySolver::Work::wakeReached(KinematicMotions& mo
         anyWoken = true;
     }
     return anyWoken && !anyAwake ? stepObstacles(m_state, *taken[0], motions, true) : obstacles;
+}
+
+// Wakes cloth that faster cloth is about to hit. Cloth that sleeps in that step would take its momentum.
+void SoftBodySolver::Work::wakeHit(btScalar dt)
+{
+    std::vector<btSoftBody*> asleep, awake;
+    for (int i = 0; i < m_bodies.size(); ++i)
+    {
+        const SelfColliding* const self = m_state.m_selfCollision.find(*m_bodies[i]);
+        if (self && self->m_meetsOthers) (m_bodies[i]->isActive() ? awake : asleep).push_back(m_bodies[i]);
+    }
+    for (const btSoftBody* body : awake)
+    {
+        if (asleep.empty()) return;
+        const btScalar thickness = SelfCollision::thicknessOf(*body, *m_state.m_selfCollision.find(*body));
+        btVector3 least = body->m_bounds[0], greatest = body->m_bounds[1];
+        btScalar farthest2 = 0;
+        for (int i = 0; i < body->m_nodes.size(); ++i)
+        {
+            const btVector3 way = dt * body->m_nodes[i].m_v, end = body->m_nodes[i].m_x + way;
+            farthest2 = std::max(farthest2, way.length2());
+            least.setMin(end);
+            greatest.setMax(end);
+        }
+        if (!(farthest2 > thickness * thickness)) continue;
+        const btVector3 reach(thickness, thickness, thickness);
+        for (btSoftBody* other : asleep)
+            if (TestAabbAgainstAabb2(least - reach, greatest + reach, other->m_bounds[0], other->m_bounds[1]) &&
+                filtersLetMeet(*body, *other))
+                other->activate();
+    }
 }
 
 // Lists the bodies that were predicted. Bullet's islands and callbacks may wake cloth, or put it to sleep, before it

@@ -156,20 +156,27 @@ ClothRows* SoftBodySolver::Work::findMeetings()
 }
 
 // Keeps cloth from meeting itself and other cloth on the way to where the solver put it, and checks bodies anew beside
-// obstacles whose nodes did not get there.
-void SoftBodySolver::Work::guardMeetings(const BodySet& fixed)
+// obstacles whose nodes did not get there. fixed: see ClothMeetings::guard(). Cloth that obstacles stopped, or that was
+// knocked out of the bounds in which meshes were looked for, does not go on with what it meets.
+void SoftBodySolver::Work::guardMeetings(BodySet fixed)
 {
     if (!m_meetings.any()) return;
     for (int round = 1;; ++round)
     {
-        std::vector<const btSoftBody*> besideMesh;
-        for (const btSoftBody* body : m_meetings.guard(round <= kCarryingGuardRounds, fixed))
-            if (contactsOf(*body)) besideMesh.push_back(body);
-        if (besideMesh.empty()) return;
-        if (round == kMostGuardRounds) return holdJammed(besideMesh, fixed);
-        for (const btSoftBody* body : besideMesh)
-            m_step->watch(*body);
+        std::vector<const btSoftBody*> moved;
+        for (btSoftBody* body : m_meetings.guard(round <= kCarryingGuardRounds, fixed))
+        {
+            const bool isOut = holdInBounds(m_state, *body, contactsOf(*body));
+            if (isOut) fixed.insert(body);
+            if (isOut) m_state.m_statistics.m_status |= kStepMotionHeldBack;
+            if (isOut || contactsOf(*body)) moved.push_back(body);
+        }
+        if (moved.empty()) return;
+        if (round == kMostGuardRounds) return holdJammed(moved, fixed);
+        for (const btSoftBody* body : moved)
+            if (contactsOf(*body)) m_step->watch(*body);
         const std::vector<BodyContacts*> offPath = m_step->checkOffPath();
+        m_step->addStopped(fixed);
         if (round <= kClosedGuardRounds) closeOffPath(offPath);
     }
 }

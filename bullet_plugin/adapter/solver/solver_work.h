@@ -81,6 +81,7 @@ struct SoftBodySolver::Work
     // Parts of beginStep().
     void listTaken();
     std::vector<StepObstacle> wakeReached(KinematicMotions& motions);
+    void wakeHit(btScalar dt);
     void listPredicted();
     void reserveSubsteps();
     void forgetRemoved();
@@ -96,7 +97,7 @@ struct SoftBodySolver::Work
     ClothRows* findMeetings();
     void recordSolved();
     std::vector<ContactPush> closingPushes();
-    void guardMeetings(const BodySet& fixed);
+    void guardMeetings(BodySet fixed);
     void holdJammed(const std::vector<const btSoftBody*>& jammed, const BodySet& fixed);
     void checkPaths(CollisionStep& step);
     void letSleep();

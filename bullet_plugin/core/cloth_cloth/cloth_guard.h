@@ -9,8 +9,8 @@
 // Method: a pair is left alone if a moving plane keeps its features apart on the way to their rounded ends. Otherwise
 // it gets a plane that rests (separating_plane.h), and a node goes the least share of its path that its resting planes
 // allow. Shorter paths change what other pairs need, so those with such nodes are checked again until nothing changes.
-// After kMostRounds every pair gets a resting plane. Pairs of patches that lay smoothly on the whole paths and do not on
-// the shorter ones are listed then. A node that stays where it started is on its side of all resting planes. Held
+// After kMostRounds every pair gets a resting plane. Pairs of patches that lay smoothly on the whole paths and do not
+// on the shorter ones are listed then. A node that stays where it started is on its side of all resting planes. Held
 // nodes stay on theirs only if they move little. Where they do not, the other feature is carried along: the ends of its
 // free nodes move with the plane, and all pairs are checked anew. Nodes that are carried then count as held, so that
 // they carry what lies behind them. If more pairs are forced in the end than without carrying, none is carried.
@@ -87,7 +87,7 @@ private:
         double m_clearance;       // m
         SeparatingPlane m_plane;  // if m_rests
         bool m_rests;             // the pair has a resting plane
-        std::uint32_t m_round;    // of the last check, counted from the start of applyOnce(); 0: none
+        std::uint32_t m_round;    // the last check's; 0: none
     };
 
     GuardResult applyOnce(ClothSet& set, const std::vector<unsigned char>& isHeld, const IsGuarded& isGuarded,
@@ -113,7 +113,7 @@ private:
     std::vector<FeatureTest> m_known;  // all that were listed, in canonical order
     std::vector<Guarded> m_pairs;
     std::vector<unsigned char> m_isNew;    // by pair: it got its resting plane in this round
-    std::uint32_t m_round = 0;             // see Guarded
+    std::uint32_t m_round = 0;             // counted from the start of applyOnce()
     std::vector<std::uint32_t> m_fellIn;   // by node: the round in which its share fell last, 0: in none
     std::vector<unsigned char> m_isMoved;  // by node: it does not go its whole path
     std::vector<double> m_shares;

@@ -129,7 +129,8 @@ void HostSelfPatches::cull(const SelfStep& step, std::uint64_t limit, ThreadTeam
     if (m_patches.m_patchCount == 0) return;
     checkSmooth(step, threads);
     pack(step, threads);
-    fillTests(step, m_patches.m_patchCount, [](std::size_t patch) { return std::uint32_t(patch); }, limit, threads);
+    fillTests(
+        step, m_patches.m_patchCount, [](std::size_t patch) { return std::uint32_t(patch); }, limit, threads);
 }
 
 void HostSelfPatches::cullLost(const SelfStep& step, std::uint64_t limit, ThreadTeam& threads)
@@ -139,7 +140,8 @@ void HostSelfPatches::cullLost(const SelfStep& step, std::uint64_t limit, Thread
     pack(step, threads);
     m_patches.m_smooth = m_smooth.viewOfLost();
     const std::vector<std::uint32_t> patches = m_smooth.patchesOfLost();
-    fillTests(step, patches.size(), [&](std::size_t i) { return patches[i]; }, limit, threads);
+    fillTests(
+        step, patches.size(), [&](std::size_t i) { return patches[i]; }, limit, threads);
     m_patches.m_smooth = m_smooth.view();
 }
 

@@ -36,8 +36,8 @@ public:
     // Computes which pairs are smooth between two places of the nodes, and returns how many. share: of the distance at
     // rest, above 0. Pairs that recheck() has barred count as not smooth.
     std::size_t check(const float* start, const float* end, float share, ThreadTeam& threads);
-    // Bars the pairs that are smooth so far and are not with these places. Returns how many there are. isMoved: by node,
-    // whether it is elsewhere than in the last check() or recheck(); null: all may be.
+    // Bars the pairs that are smooth so far and are not with these places. Returns how many there are. isMoved: by
+    // node, whether it is elsewhere than in the last check() or recheck(); null: all may be.
     std::size_t recheck(const float* start, const float* end, float share, const unsigned char* isMoved,
                         ThreadTeam& threads);
     void allowAll();

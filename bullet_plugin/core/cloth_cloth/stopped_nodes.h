@@ -2,7 +2,7 @@
 //
 // Nodes of one impact keep their common rigid motion, and with it their linear and angular momentum. The rest of their
 // velocities shrinks with the way that each could go, or is lost. In an impact with a held node, which takes the
-// momentum, the velocities of all nodes shrink as that of the node that went least far: where each kept another share,
+// momentum, the velocities of all nodes shrink as that of the node that went least far. If each kept its own share,
 // neighbours would go apart, and cloth would crumple. The energy of these velocities never grows. Double precision; the
 // same bits everywhere.
 #pragma once
