@@ -6,6 +6,7 @@
 #include "bullet_plugin/core/backends/device_cloth_search.h"
 #include "bullet_plugin/core/exact/triangles.h"
 #include "bullet_plugin/core/probe/mesh_probe.h"
+#include "bullet_plugin/core/threads/ranges.h"
 
 namespace drape
 {
@@ -15,6 +16,8 @@ namespace
 constexpr float kApart = 4;
 // Factor on the share of the distance at rest that contacts of neighbours reach, for rounding.
 constexpr float kSmoothContactMargin = 1.01f;
+// Minimum pairs of features for sharing them among threads, and those of a range.
+constexpr std::size_t kLeastShared = 1 << 14, kRange = 1 << 12;
 // Distance at rest, as a multiple of the thickness, up to which pairs of patches may be left out.
 constexpr float kSmoothReach = 2;
 
@@ -157,13 +160,28 @@ bool ClothSet::listPairs(const SelfStep& step, std::uint64_t limit, ThreadTeam& 
         m_patches->checkSmooth(step, threads);
         if (m_search->finishPairs(pairs))
         {
-            const auto isSmooth = [this](const FeatureTest& pair) { return m_patches->isSmooth(pair); };
-            pairs.erase(std::remove_if(pairs.begin(), pairs.end(), isSmooth), pairs.end());
+            dropSmooth(threads, pairs);
             return true;
         }
     }
     m_patches->cull(step, limit, threads);
     return m_patches->copyTests(limit, pairs);
+}
+
+// Drops what cull() leaves out.
+void ClothSet::dropSmooth(ThreadTeam& threads, std::vector<FeatureTest>& pairs) const
+{
+    std::vector<unsigned char> isSmooth(pairs.size());
+    const auto check = [&](std::size_t first, std::size_t last)
+    {
+        for (std::size_t i = first; i < last; ++i)
+            isSmooth[i] = m_patches->isSmooth(pairs[i]);
+    };
+    forRanges(pairs.size(), kLeastShared, kRange, &threads, check);
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < pairs.size(); ++i)
+        if (!isSmooth[i]) pairs[kept++] = pairs[i];
+    pairs.resize(kept);
 }
 
 bool ClothSet::findPairs(float reach, std::uint64_t limit, ThreadTeam& threads, std::vector<FeatureTest>& pairs)

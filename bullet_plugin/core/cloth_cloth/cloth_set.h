@@ -97,6 +97,7 @@ public:
 
 private:
     SelfStep stepFor(float reach, float reachScale, bool forContacts);
+    void dropSmooth(ThreadTeam& threads, std::vector<FeatureTest>& pairs) const;
     bool listPairs(const SelfStep& step, std::uint64_t limit, ThreadTeam& threads, std::vector<FeatureTest>& pairs);
 
     std::unique_ptr<DeviceClothSearch> m_search;  // null: the host searches

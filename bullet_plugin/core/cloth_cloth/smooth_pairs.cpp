@@ -4,15 +4,15 @@
 #include <array>
 #include <cmath>
 
-#include "bullet_plugin/core/threads/ranges.h"
 #include "bullet_plugin/core/vec3d.h"
 
 namespace drape
 {
 namespace
 {
-// Maximum numbers of pairs of a patch and of nodes of a cover. Others are tested in every step.
-constexpr std::size_t kMostPairs = 48, kMostNodes = 255;
+// Maximum numbers of pairs of a patch, and of nodes of the cover of a pair and of a region. Others are tested in every
+// step.
+constexpr std::size_t kMostPairs = 48, kMostNodes = 255, kMostRegionNodes = 1023;
 // Greatest ratio of a way in a cover at rest to that in its plane: the cover is nearly flat.
 constexpr double kMostSlope = 1.3;
 // Least height of a triangle of a cover, as a share of the cover's size: rounding then matters little.
@@ -22,8 +22,8 @@ constexpr double kLeastHeight = 1.0 / 500;
 constexpr double kIntrusion = 1e-5;
 // Factor on the demanded distance, for rounding and for ways around a border.
 constexpr float kMargin = 1.02f;
-// Patches and pairs that a thread takes at a time, and the minimum number of pairs for waking threads.
-constexpr std::size_t kPatchRange = 64, kPairRange = 64, kLeastPairs = 256;
+// Patches that a thread builds at a time, and the minimum number of pairs for waking threads.
+constexpr std::size_t kPatchRange = 64, kLeastPairs = 256;
 constexpr std::uint32_t kNone = 0xffffffffu, kMany = 0xfffffffeu;
 
 struct Place
@@ -93,6 +93,7 @@ struct SmoothPairs::Builder
     explicit Builder(const Mesh& mesh) : m_mesh(mesh) {}
 
     void addPatch(std::uint32_t patch, float reach);
+    void addRegion(std::uint32_t first, std::uint32_t last);
 
     SmoothPairs m_pairs;  // pairs of the builder's patches; m_first has the number of pairs of each
     const Mesh& m_mesh;
@@ -105,12 +106,12 @@ struct SmoothPairs::Builder
     template <class Call>
     void forTriangles(std::uint32_t patch, const Call& call) const;
     void listNear(std::uint32_t patch, float reach);
-    bool takePlane(std::uint32_t first, std::uint32_t second);
+    bool takePlane(const std::vector<std::uint32_t>& patches);
     Place placeOf(std::uint32_t node) const;
     std::size_t indexOf(std::uint32_t node);
-    bool takeTriangle(std::uint32_t triangle, double size, double* slope);
-    bool cover(std::uint32_t first, std::uint32_t second, double* slope);
-    void addPair(std::uint32_t first, std::uint32_t second);
+    bool takeTriangle(std::uint32_t triangle, double size, std::size_t mostNodes, double* slope);
+    bool findCover(const std::vector<std::uint32_t>& patches, std::size_t mostNodes, double* slope);
+    bool addCover(const std::vector<std::uint32_t>& patches, std::size_t mostNodes, std::vector<Cover>& covers);
 };
 
 template <class Call>
@@ -142,19 +143,19 @@ void SmoothPairs::Builder::listNear(std::uint32_t patch, float reach)
     if (m_near.size() > kMostPairs) m_near.resize(kMostPairs);
 }
 
-// Takes the plane of two patches: through a node, across the sum of their triangles' normals.
-bool SmoothPairs::Builder::takePlane(std::uint32_t first, std::uint32_t second)
+// Takes the plane of patches: through a node, across the sum of their triangles' normals.
+bool SmoothPairs::Builder::takePlane(const std::vector<std::uint32_t>& patches)
 {
     Vec3d sum;
-    m_origin = m_mesh.m_boxes[first][0];
+    m_origin = m_mesh.m_boxes[patches[0]][0];
     const auto add = [&](std::uint32_t triangle)
     {
         const std::uint32_t* const v = m_mesh.m_cloths.triangles()[triangle].m_vertices;
         const Vec3d a = pointAt(m_mesh.m_rest, v[0]);
         sum = sum + cross(pointAt(m_mesh.m_rest, v[1]) - a, pointAt(m_mesh.m_rest, v[2]) - a);
     };
-    forTriangles(first, add);
-    forTriangles(second, add);
+    for (const std::uint32_t patch : patches)
+        forTriangles(patch, add);
     m_normal = unit(sum);
     const Vec3d axis = std::fabs(m_normal.x) < 0.6 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0};
     m_axes[0] = unit(cross(axis, m_normal));
@@ -179,7 +180,7 @@ std::size_t SmoothPairs::Builder::indexOf(std::uint32_t node)
 }
 
 // Adds a triangle to the cover. Returns whether it may belong to one.
-bool SmoothPairs::Builder::takeTriangle(std::uint32_t triangle, double size, double* slope)
+bool SmoothPairs::Builder::takeTriangle(std::uint32_t triangle, double size, std::size_t mostNodes, double* slope)
 {
     const std::uint32_t* const v = m_mesh.m_cloths.triangles()[triangle].m_vertices;
     const Vec3d a = pointAt(m_mesh.m_rest, v[0]), b = pointAt(m_mesh.m_rest, v[1]), c = pointAt(m_mesh.m_rest, v[2]);
@@ -191,15 +192,15 @@ bool SmoothPairs::Builder::takeTriangle(std::uint32_t triangle, double size, dou
     *slope = std::max(*slope, area / flat);
     m_triangles.push_back(triangle);
     for (int k = 0; k < 3; ++k)
-        m_pairs.m_corners.push_back((unsigned char)(indexOf(v[k])));
-    return m_nodes.size() <= kMostNodes;
+        m_pairs.m_corners.push_back(std::uint16_t(indexOf(v[k])));
+    return m_nodes.size() <= mostNodes;
 }
 
-// Makes the cover of two patches: from a triangle of the first over all edges that reach into their hull. Returns
-// whether there is one that contains both.
-bool SmoothPairs::Builder::cover(std::uint32_t first, std::uint32_t second, double* slope)
+// Makes the cover of patches: from a triangle of the first over all edges that reach into their hull. Returns whether
+// there is one that contains all.
+bool SmoothPairs::Builder::findCover(const std::vector<std::uint32_t>& patches, std::size_t mostNodes, double* slope)
 {
-    if (!takePlane(first, second)) return false;
+    if (!takePlane(patches)) return false;
     std::vector<Place> points;
     std::vector<std::uint32_t> wanted;
     const auto add = [&](std::uint32_t triangle)
@@ -208,13 +209,13 @@ bool SmoothPairs::Builder::cover(std::uint32_t first, std::uint32_t second, doub
         for (const std::uint32_t node : m_mesh.m_cloths.triangles()[triangle].m_vertices)
             points.push_back(placeOf(node));
     };
-    forTriangles(first, add);
-    if (first != second) forTriangles(second, add);
+    for (const std::uint32_t patch : patches)
+        forTriangles(patch, add);
     const std::vector<Place> hull = hullOf(points);
     double size = 0;
     for (const Place& p : hull)
         size = std::max(size, std::hypot(p.x - hull[0].x, p.y - hull[0].y));
-    if (!takeTriangle(wanted[0], size, slope)) return false;
+    if (wanted.empty() || !takeTriangle(wanted[0], size, mostNodes, slope)) return false;
     for (std::size_t i = 0; i < m_triangles.size(); ++i)
     {
         const Triangle& triangle = m_mesh.m_cloths.triangles()[m_triangles[i]];
@@ -226,7 +227,7 @@ bool SmoothPairs::Builder::cover(std::uint32_t first, std::uint32_t second, doub
             const std::uint32_t other = beside[0] == m_triangles[i] ? beside[1] : beside[0];
             if (beside[0] == kMany || other == kNone) return false;
             if (std::find(m_triangles.begin(), m_triangles.end(), other) != m_triangles.end()) continue;
-            if (!takeTriangle(other, size, slope)) return false;
+            if (!takeTriangle(other, size, mostNodes, slope)) return false;
         }
     }
     return std::all_of(wanted.begin(), wanted.end(),
@@ -234,23 +235,29 @@ bool SmoothPairs::Builder::cover(std::uint32_t first, std::uint32_t second, doub
                        { return std::find(m_triangles.begin(), m_triangles.end(), triangle) != m_triangles.end(); });
 }
 
-void SmoothPairs::Builder::addPair(std::uint32_t first, std::uint32_t second)
+// Adds the cover of patches to a list. Returns whether there is one.
+bool SmoothPairs::Builder::addCover(const std::vector<std::uint32_t>& patches, std::size_t mostNodes,
+                                    std::vector<Cover>& covers)
 {
     const std::size_t corners = m_pairs.m_corners.size();
     double slope = 1;
     m_triangles.clear();
     m_nodes.clear();
     m_places.clear();
-    if (!cover(first, second, &slope)) return m_pairs.m_corners.resize(corners);
-    m_pairs.m_others.push_back(second);
-    m_pairs.m_covers.push_back({std::uint32_t(m_pairs.m_nodes.size()), std::uint32_t(m_nodes.size()),
-                                std::uint32_t(corners / 3), std::uint32_t(m_triangles.size()), float(slope)});
+    if (!findCover(patches, mostNodes, &slope))
+    {
+        m_pairs.m_corners.resize(corners);
+        return false;
+    }
+    covers.push_back({std::uint32_t(m_pairs.m_nodes.size()), std::uint32_t(m_nodes.size()), std::uint32_t(corners / 3),
+                      std::uint32_t(m_triangles.size()), float(slope)});
     m_pairs.m_nodes.insert(m_pairs.m_nodes.end(), m_nodes.begin(), m_nodes.end());
     for (const Place& place : m_places)
     {
         m_pairs.m_places.push_back(float(place.x));
         m_pairs.m_places.push_back(float(place.y));
     }
+    return true;
 }
 
 void SmoothPairs::Builder::addPatch(std::uint32_t patch, float reach)
@@ -258,8 +265,26 @@ void SmoothPairs::Builder::addPatch(std::uint32_t patch, float reach)
     const std::size_t pairs = m_pairs.m_others.size();
     listNear(patch, reach);
     for (const std::uint32_t other : m_near)
-        addPair(patch, other);
+    {
+        std::vector<std::uint32_t> both = {patch};
+        if (other != patch) both.push_back(other);
+        if (addCover(both, kMostNodes, m_pairs.m_covers)) m_pairs.m_others.push_back(other);
+    }
     m_pairs.m_first.push_back(std::uint32_t(m_pairs.m_others.size() - pairs));
+}
+
+// Adds the region of the patches from first to last, whose pairs are the last that were added.
+void SmoothPairs::Builder::addRegion(std::uint32_t first, std::uint32_t last)
+{
+    std::size_t pairs = 0;
+    for (std::size_t i = m_pairs.m_first.size() - (last - first); i < m_pairs.m_first.size(); ++i)
+        pairs += m_pairs.m_first[i];
+    std::vector<std::uint32_t> patches(m_pairs.m_others.end() - std::ptrdiff_t(pairs), m_pairs.m_others.end());
+    for (std::uint32_t patch = first; patch < last; ++patch)
+        patches.push_back(patch);
+    std::sort(patches.begin(), patches.end());
+    patches.erase(std::unique(patches.begin(), patches.end()), patches.end());
+    if (pairs == 0 || !addCover(patches, kMostRegionNodes, m_pairs.m_regions)) m_pairs.m_regions.push_back({});
 }
 
 // Notes the patch of each triangle, the triangles beside each edge, and the patches' boxes and neighbours.
@@ -313,12 +338,17 @@ void SmoothPairs::append(const SmoothPairs& part)
     const auto nodes = std::uint32_t(m_nodes.size()), triangles = std::uint32_t(m_corners.size() / 3);
     for (const std::uint32_t pairs : part.m_first)
         m_first.push_back(m_first.back() + pairs);
-    for (Cover cover : part.m_covers)
+    const auto take = [&](const std::vector<Cover>& from, std::vector<Cover>& to)
     {
-        cover.m_firstNode += nodes;
-        cover.m_firstTriangle += triangles;
-        m_covers.push_back(cover);
-    }
+        for (Cover cover : from)
+        {
+            cover.m_firstNode += nodes;
+            cover.m_firstTriangle += triangles;
+            to.push_back(cover);
+        }
+    };
+    take(part.m_covers, m_covers);
+    take(part.m_regions, m_regions);
     m_others.insert(m_others.end(), part.m_others.begin(), part.m_others.end());
     m_nodes.insert(m_nodes.end(), part.m_nodes.begin(), part.m_nodes.end());
     m_places.insert(m_places.end(), part.m_places.begin(), part.m_places.end());
@@ -335,8 +365,14 @@ void SmoothPairs::assign(const MeshPool& cloths, const Patches& patches, const f
     const auto build = [&](std::size_t part)
     {
         Builder builder(mesh);
-        for (std::size_t patch = part * kPatchRange; patch < std::min(count, (part + 1) * kPatchRange); ++patch)
-            builder.addPatch(std::uint32_t(patch), reach);
+        const std::size_t end = std::min(count, (part + 1) * kPatchRange);
+        for (std::size_t first = part * kPatchRange; first < end; first += kRegion)
+        {
+            const std::size_t last = std::min(end, first + kRegion);
+            for (std::size_t patch = first; patch < last; ++patch)
+                builder.addPatch(std::uint32_t(patch), reach);
+            builder.addRegion(std::uint32_t(first), std::uint32_t(last));
+        }
         parts[part] = std::move(builder.m_pairs);
     };
     threads.run(parts.size(), build);
@@ -352,13 +388,13 @@ namespace
 // A cover's nodes seen along two axes at one end of the way.
 struct Seen
 {
-    float m_x[kMostNodes], m_y[kMostNodes];
+    float m_x[kMostRegionNodes], m_y[kMostRegionNodes];
 };
 
 // Two sides of a triangle in a cover's plane, m, from its first corner.
 struct Sides
 {
-    Sides(const float* places, const unsigned char* corners)
+    Sides(const float* places, const std::uint16_t* corners)
         : ux(places[2 * corners[1]] - places[2 * corners[0]]),
           uy(places[2 * corners[1] + 1] - places[2 * corners[0] + 1]),
           vx(places[2 * corners[2]] - places[2 * corners[0]]),
@@ -392,8 +428,8 @@ bool SmoothPairs::isSmoothNow(const Cover& cover, const float* start, const floa
 {
     const std::uint32_t* const nodes = m_nodes.data() + cover.m_firstNode;
     const float* const places = m_places.data() + 2 * std::size_t(cover.m_firstNode);
-    const unsigned char* const corners = m_corners.data() + 3 * std::size_t(cover.m_firstTriangle);
-    Vec3 offsets[2][kMostNodes];
+    const std::uint16_t* const corners = m_corners.data() + 3 * std::size_t(cover.m_firstTriangle);
+    Vec3 offsets[2][kMostRegionNodes];
     // The axes lie along the gradient in the mean of all triangles.
     Vec3 x = vec3(0.0f, 0.0f, 0.0f), y = x, axes[2];
     for (std::uint32_t i = 0; i < cover.m_nodeCount; ++i)
@@ -403,7 +439,7 @@ bool SmoothPairs::isSmoothNow(const Cover& cover, const float* start, const floa
     }
     for (std::uint32_t t = 0; t < cover.m_triangleCount; ++t)
     {
-        const unsigned char* const c = corners + 3 * t;
+        const std::uint16_t* const c = corners + 3 * t;
         const Sides at(places, c);
         const Vec3 p =
             vec3Add(vec3Sub(offsets[0][c[1]], offsets[0][c[0]]), vec3Sub(offsets[1][c[1]], offsets[1][c[0]]));
@@ -425,7 +461,7 @@ bool SmoothPairs::isSmoothNow(const Cover& cover, const float* start, const floa
         }
         for (std::uint32_t t = 0; t < cover.m_triangleCount; ++t)
         {
-            const unsigned char* const c = corners + 3 * t;
+            const std::uint16_t* const c = corners + 3 * t;
             const Sides at(places, c);
             const float px = seen.m_x[c[1]] - seen.m_x[c[0]], py = seen.m_y[c[1]] - seen.m_y[c[0]];
             const float qx = seen.m_x[c[2]] - seen.m_x[c[0]], qy = seen.m_y[c[2]] - seen.m_y[c[0]];
@@ -439,29 +475,39 @@ bool SmoothPairs::isSmoothNow(const Cover& cover, const float* start, const floa
     return all;
 }
 
-template <class Take>
-void SmoothPairs::forPairs(const float* start, const float* end, float share, ThreadTeam& threads, const Take& take)
-{
-    const auto range = [&](std::size_t first, std::size_t last)
-    {
-        for (std::size_t i = first; i < last; ++i)
-            take(i, [&] { return isSmoothNow(m_covers[i], start, end, share); });
-    };
-    forRanges(m_covers.size(), kLeastPairs, kPairRange, &threads, range);
-}
-
-std::size_t SmoothPairs::check(const float* start, const float* end, float share, ThreadTeam& threads)
-{
-    forPairs(start, end, share, threads,
-             [&](std::size_t pair, const auto& isSmooth) { m_isSmooth[pair] = !m_isBarred[pair] && isSmooth(); });
-    return std::size_t(std::count(m_isSmooth.begin(), m_isSmooth.end(), 1));
-}
-
 bool SmoothPairs::isAnyMoved(const Cover& cover, const unsigned char* isMoved) const
 {
     const std::uint32_t* const first = m_nodes.data() + cover.m_firstNode;
     return !isMoved ||
            std::any_of(first, first + cover.m_nodeCount, [&](std::uint32_t node) { return isMoved[node] != 0; });
+}
+
+// Calls take(pair, isSmooth) for all pairs, but for those of which no node has moved. isSmooth(): whether the pair is.
+template <class Take>
+void SmoothPairs::forPairs(const float* start, const float* end, float share, const unsigned char* isMoved,
+                           ThreadTeam& threads, const Take& take)
+{
+    const auto takeRegion = [&](std::size_t region)
+    {
+        const Cover& all = m_regions[region];
+        const bool hasCover = all.m_triangleCount > 0;
+        if (hasCover && !isAnyMoved(all, isMoved)) return;
+        const bool allSmooth = hasCover && isSmoothNow(all, start, end, share);
+        const std::size_t last = std::min(m_first.size() - 1, (region + 1) * kRegion);
+        for (std::size_t pair = m_first[region * kRegion]; pair < m_first[last]; ++pair)
+            if (isAnyMoved(m_covers[pair], isMoved))
+                take(pair, [&] { return allSmooth || isSmoothNow(m_covers[pair], start, end, share); });
+    };
+    if (m_covers.size() >= kLeastPairs) return threads.run(m_regions.size(), takeRegion);
+    for (std::size_t region = 0; region < m_regions.size(); ++region)
+        takeRegion(region);
+}
+
+std::size_t SmoothPairs::check(const float* start, const float* end, float share, ThreadTeam& threads)
+{
+    forPairs(start, end, share, nullptr, threads,
+             [&](std::size_t pair, const auto& isSmooth) { m_isSmooth[pair] = !m_isBarred[pair] && isSmooth(); });
+    return std::size_t(std::count(m_isSmooth.begin(), m_isSmooth.end(), 1));
 }
 
 std::size_t SmoothPairs::recheck(const float* start, const float* end, float share, const unsigned char* isMoved,
@@ -470,11 +516,11 @@ std::size_t SmoothPairs::recheck(const float* start, const float* end, float sha
     m_isKept.assign(m_covers.size(), 1);
     const auto take = [&](std::size_t pair, const auto& isSmooth)
     {
-        if (!m_isSmooth[pair] || !isAnyMoved(m_covers[pair], isMoved) || isSmooth()) return;
+        if (!m_isSmooth[pair] || isSmooth()) return;
         m_isKept[pair] = m_isSmooth[pair] = 0;
         m_isBarred[pair] = 1;
     };
-    forPairs(start, end, share, threads, take);
+    forPairs(start, end, share, isMoved, threads, take);
     return std::size_t(std::count(m_isKept.begin(), m_isKept.end(), 0));
 }
 

@@ -10,9 +10,11 @@
 // the line's direction and R two orthonormal axes. If d.R^T f'(d) >= m for all triangles of the cover, the points are
 // at least m times as far apart as in the plane. This is Volino and Magnenat-Thalmann's cone of normals (1994,
 // Efficient Self-Collision Detection on Smoothly Discretized Surface Animations), with the stretch included. The least
-// eigenvalue of a matrix that is linear in time is concave, so start and end decide for the whole way.
+// eigenvalue of a matrix that is linear in time is concave, so start and end decide for the whole way. A region of
+// patches has a cover, too, of all its pairs together. Pairs are asked one by one where that is not smooth.
 //
-// Cost: some microseconds a pair once, for the covers, and one in each step. Host only. Lengths in metres.
+// Cost: some microseconds a pair once, for the covers. In each step as many for a region of kRegion patches that is
+// smooth, else a microsecond a pair. Host only. Lengths in metres.
 #pragma once
 
 #include <cstddef>
@@ -51,7 +53,10 @@ public:
     std::vector<std::uint32_t> patchesOfLost() const;
 
 private:
-    // The cover of a pair.
+    // Patches of a region, one after the other.
+    static constexpr std::size_t kRegion = 16;
+
+    // The cover of a pair or of a region; without triangles there is none.
     struct Cover
     {
         std::uint32_t m_firstNode, m_nodeCount;
@@ -67,7 +72,8 @@ private:
     bool isAnyMoved(const Cover& cover, const unsigned char* isMoved) const;
     bool isSmoothNow(const Cover& cover, const float* start, const float* end, float share) const;
     template <class Take>
-    void forPairs(const float* start, const float* end, float share, ThreadTeam& threads, const Take& take);
+    void forPairs(const float* start, const float* end, float share, const unsigned char* isMoved, ThreadTeam& threads,
+                  const Take& take);
 
     std::vector<std::uint32_t> m_patchOf;   // by triangle
     std::vector<std::uint32_t> m_first;     // first pair of each patch, then the number of pairs
@@ -76,8 +82,9 @@ private:
     std::vector<unsigned char> m_isBarred;  // by pair
     std::vector<unsigned char> m_isKept;    // by pair: the last recheck() did not bar it
     std::vector<Cover> m_covers;            // by pair
+    std::vector<Cover> m_regions;           // by region
     std::vector<std::uint32_t> m_nodes;     // the covers' nodes
-    std::vector<float> m_places;            // two per node of m_nodes: m, in the pair's plane at rest
-    std::vector<unsigned char> m_corners;   // three per triangle of a cover, among the cover's nodes
+    std::vector<float> m_places;            // two per node of m_nodes: m, in the cover's plane at rest
+    std::vector<std::uint16_t> m_corners;   // three per triangle of a cover, among the cover's nodes
 };
 }  // namespace drape
