@@ -83,6 +83,7 @@ struct SoftBodySolver::Work
     std::vector<StepObstacle> wakeReached(KinematicMotions& motions);
     void listPredicted();
     void reserveSubsteps();
+    void shareSubsteps(btScalar dt);
     void forgetRemoved();
 
     // Parts of solveStep().
