@@ -522,4 +522,108 @@ TEST(ClothMeetings, ImpactsKeepTheMomentum)
         EXPECT_LT(box.getLinearVelocity().length(), 0.9f * speed);
     }
 }
+
+// Returns the kinetic energy, J.
+btScalar motionOf(const Layers& layers)
+{
+    btScalar energy = 0;
+    for (const btSoftBody* cloth : layers.m_cloths)
+        for (int i = 0; i < cloth->m_nodes.size(); ++i)
+            energy += cloth->m_nodes[i].m_v.length2() / (2 * cloth->m_nodes[i].m_im);
+    return energy;
+}
+
+// Two sheets fly towards each other, without gravity.
+struct MeetingSheets : Layers
+{
+    MeetingSheets(int lower, int upper) : Layers(hostSettings(), 2, 0.1f)
+    {
+        turnGravityOff();
+        m_cloths[0]->m_cfg.piterations = lower;
+        m_cloths[1]->m_cfg.piterations = upper;
+        m_cloths[0]->setVelocity(btVector3(0.2f, 1, 0));
+        m_cloths[1]->setVelocity(btVector3(0, -2, 0.1f));
+    }
+
+    // Runs a step, and expects that no momentum or energy comes.
+    void keepSteps(int steps, btScalar dt = kDt)
+    {
+        for (int i = 0; i < steps; ++i)
+        {
+            m_world.world().stepSimulation(dt, 0);
+            ASSERT_LT((momentum() - m_momentum).length(), 1e-5f * m_momentum.length()) << i;
+            ASSERT_LT(motionOf(*this), 1.001f * m_energy) << i;
+        }
+    }
+    void start()
+    {
+        m_momentum = momentum();
+        m_energy = motionOf(*this);
+    }
+
+    btVector3 m_momentum;
+    btScalar m_energy = 0;
+};
+
+TEST(ClothMeetings, ClothsOfDifferentSubstepsKeepTheirMomentum)
+{
+    for (const auto& counts : {std::pair<int, int>(1, 8), {8, 1}, {5, 3}})
+    {
+        MeetingSheets sheets(counts.first, counts.second);
+        sheets.start();
+        sheets.keepSteps(60);
+        EXPECT_LT(sheets.m_cloths[0]->m_nodes[84].m_v.y(), 0.5f) << counts.first << " " << counts.second;
+    }
+}
+
+TEST(ClothMeetings, ClothsThatCorrectAtDifferentRatesKeepTheirMomentum)
+{
+    MeetingSheets changing(2, 8), slow(5, 5), fast(5, 5);
+    changing.m_cloths[0]->m_cfg.viterations = 1;
+    changing.m_world.step(1);
+    EXPECT_FALSE(changing.m_plugin.whyBulletSolves(*changing.m_cloths[0]).empty());
+    changing.m_cloths[0]->m_cfg.viterations = 0;
+    changing.start();
+    changing.keepSteps(10);
+    changing.keepSteps(40, kDt / 4);
+    slow.m_cloths[0]->m_cfg.timescale = 0.5f;
+    fast.m_cloths[1]->m_cfg.timescale = 0.3f;
+    for (MeetingSheets* sheets : {&slow, &fast})
+    {
+        sheets->start();
+        sheets->keepSteps(60);
+    }
+}
+
+TEST(ClothMeetings, SheetsOfDifferentSubstepsFallTogether)
+{
+    Layers layers(hostSettings(), 2, 0.02f);
+    layers.m_cloths[0]->m_cfg.piterations = 10;
+    layers.m_cloths[1]->m_cfg.piterations = 4;
+    EXPECT_EQ(layers.run(60), 0u);
+    for (const btSoftBody* cloth : layers.m_cloths)
+        for (const int node : {0, 84, 168})
+            EXPECT_NEAR(cloth->m_nodes[node].m_v.y(), -9.81f, 0.02f) << node;
+}
+
+// Cloth that sleeps or stands still takes no part in the choice of the substeps.
+TEST(ClothMeetings, ClothThatDoesNotMoveSharesNoSubsteps)
+{
+    std::vector<std::vector<float>> ends;
+    for (int way = 0; way < 4; ++way)
+    {
+        Layers layers(hostSettings(), 2, -3.0f);  // the other falls far below
+        btSoftBody &moving = *layers.m_cloths[0], &other = *layers.m_cloths[1];
+        moving.setMass(0, 0);
+        moving.m_cfg.piterations = 3;
+        other.m_cfg.piterations = way == 0 ? 3 : 12;
+        if (way == 1) other.setActivationState(ISLAND_SLEEPING);
+        if (way == 2) other.m_cfg.timescale = 0;
+        layers.m_world.step(20);
+        ends.push_back(positionsOf(moving));
+    }
+    EXPECT_EQ(ends[0], ends[1]);
+    EXPECT_EQ(ends[0], ends[2]);
+    EXPECT_NE(ends[0], ends[3]);
+}
 }  // namespace drape::test

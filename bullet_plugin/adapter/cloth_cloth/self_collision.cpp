@@ -36,14 +36,28 @@ void SelfCollision::startAnew(const btCollisionObject& object)
         if (entry.first == &object) entry.second.m_ends.clear();
 }
 
+bool SelfCollision::isAsked(const btSoftBody& body) const
+{
+    const auto found = m_bodies.find(&body);
+    return found != m_bodies.end() && found->second.m_isAsked;
+}
+
+bool SelfCollision::asksItself(const btSoftBody& body) const
+{
+    return m_heedsFlags && (body.m_useSelfCollision || (body.m_cfg.collisions & btSoftBody::fCollision::CL_SELF));
+}
+
+bool SelfCollision::asksOthers(const btSoftBody& body) const
+{
+    return m_heedsFlags && (body.m_cfg.collisions & btSoftBody::fCollision::VF_SS);
+}
+
 SelfColliding* SelfCollision::find(const btSoftBody& body)
 {
     auto found = m_bodies.find(&body);
-    if (found == m_bodies.end() || !found->second.m_isAsked)
+    if (!isAsked(body))
     {
-        const bool meetsOthers = m_heedsFlags && (body.m_cfg.collisions & btSoftBody::fCollision::VF_SS);
-        const bool meetsItself =
-            m_heedsFlags && (body.m_useSelfCollision || (body.m_cfg.collisions & btSoftBody::fCollision::CL_SELF));
+        const bool meetsOthers = asksOthers(body), meetsItself = asksItself(body);
         if (!meetsOthers && !meetsItself)
         {
             if (found != m_bodies.end()) m_bodies.erase(found);

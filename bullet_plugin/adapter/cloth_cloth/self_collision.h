@@ -38,6 +38,8 @@ public:
     void clear(const btSoftBody& body) { m_bodies.erase(&body); }
     // Forgets where the body was after the last step, if it is one of these.
     void startAnew(const btCollisionObject& object);
+    // Returns whether find() returns anything.
+    bool has(const btSoftBody& body) const { return isAsked(body) || asksItself(body) || asksOthers(body); }
     // Returns null if the body collides neither with itself nor with others. Takes new positions at rest if it got
     // other nodes.
     SelfColliding* find(const btSoftBody& body);
@@ -47,6 +49,11 @@ public:
     static btScalar thicknessOf(const btSoftBody& body, const SelfColliding& self);
 
 private:
+    bool isAsked(const btSoftBody& body) const;
+    // Return whether flags of Bullet's ask for it: with itself, and with others.
+    bool asksItself(const btSoftBody& body) const;
+    bool asksOthers(const btSoftBody& body) const;
+
     bool m_heedsFlags;
     int m_lastRevision = 0;
     std::unordered_map<const btSoftBody*, SelfColliding> m_bodies;

@@ -23,15 +23,15 @@ btVector3 corner(const float numbers[3])
     return btVector3(btScalar(numbers[0]), btScalar(numbers[1]), btScalar(numbers[2]));
 }
 
-KeptStep stepOver(const btSoftBody& body, KeptId id)
+KeptStep stepOver(const btSoftBody& body, int substeps, KeptId id)
 {
     KeptStep step;
     step.m_id = id;
     step.m_gravity = vec3Of(body.m_worldInfo->m_gravity * body.m_sst.sdt);
     step.m_time = float(body.m_sst.sdt);
     step.m_perSecond = float(body.m_sst.isdt);
-    step.m_shift = float(SubstepBody::pathShift(body));
-    step.m_supportShift = float(SubstepBody::supportShift(body));
+    step.m_shift = float(SubstepBody::pathShift(body, substeps));
+    step.m_supportShift = float(SubstepBody::supportShift(body, substeps));
     return step;
 }
 
@@ -258,7 +258,7 @@ bool KeptBodies::anyPinMoved(const btSoftBody& body, const Kept& kept) const
     return false;
 }
 
-bool KeptBodies::begin(btSoftBody& body, btScalar dt)
+bool KeptBodies::begin(btSoftBody& body, int substeps, btScalar dt)
 {
     Kept& kept = *find(body);
     kept.m_isBegun = false;
@@ -266,7 +266,7 @@ bool KeptBodies::begin(btSoftBody& body, btScalar dt)
     if (kept.m_faces != body.m_faces.size() || kept.m_links != body.m_links.size()) return false;
     if (!isPlain(body, dt) || body.m_anchors.size() > 0 || anyPinMoved(body, kept)) return false;
     beginPlain(body, dt);
-    const KeptStep step = stepOver(body, kept.m_id);
+    const KeptStep step = stepOver(body, substeps, kept.m_id);
     if (!isSameStep(step, kept.m_step)) return false;
     const KeptBoxes& boxes = boxesOf(body);
     if (!boxes.m_areFinite) return false;
@@ -377,7 +377,7 @@ void KeptBodies::store(btSoftBody& body, Kept& kept, const SubstepBody* substeps
     }
     kept.m_faces = body.m_faces.size();
     kept.m_links = body.m_links.size();
-    kept.m_step = stepOver(body, kept.m_id);
+    kept.m_step = stepOver(body, substeps ? substeps->count() : SubstepBody::leastSubstepsOf(body), kept.m_id);
     stage()->kept().write(kept.m_id, nodes, boxesAround(body, kept.m_step, nodes));
     kept.m_isOnDevice = true;
 }

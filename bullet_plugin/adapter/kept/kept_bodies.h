@@ -55,7 +55,7 @@ public:
     // Returns whether a node of the stored body is pinned.
     bool hasPins(const btSoftBody& body) const;
     // Begins a step of dt seconds of a body on the device. Returns false if it must be brought to the host first.
-    bool begin(btSoftBody& body, btScalar dt);
+    bool begin(btSoftBody& body, int substeps, btScalar dt);
     // Returns whether Bullet's own algorithm may find contacts of the body with the object.
     bool isRead(const btSoftBody& body, const btCollisionObject& object) const;
     // Returns the step that was begun; null for a body on the host.

@@ -73,7 +73,7 @@ std::uint32_t RigidBodies::indexOf(const btCollisionObject& object)
     return added.first->second;
 }
 
-void RigidBodies::addRows(const btSoftBody& body, const SolverNodes& nodes, RigidRows& rows)
+void RigidBodies::addRows(const btSoftBody& body, int substeps, const SolverNodes& nodes, RigidRows& rows)
 {
     const float dt = float(body.m_sst.sdt), margin = float(body.getCollisionShape()->getMargin());
     rows.setBodies(m_bodies);
@@ -87,8 +87,8 @@ void RigidBodies::addRows(const btSoftBody& body, const SolverNodes& nodes, Rigi
         row.m_arm = vec3Of(pose.getBasis() * anchor.m_local);
         const Vec3 end = vec3Of(pose * anchor.m_local - vectorOf(nodes.start(row.m_node)));
         row.m_apart = vec3AddScaled(end, rigidVelocity(&m_bodies[row.m_body], row.m_arm), -dt);
-        row.m_share = float(visitShare(double(body.m_cfg.kAHR * anchor.m_influence), body.m_cfg.piterations,
-                                       SubstepBody::substepsOf(body), 1));
+        const double hardness = double(body.m_cfg.kAHR * anchor.m_influence);
+        row.m_share = float(visitShare(hardness, body.m_cfg.piterations, substeps, 1));
         rows.add(row);
     }
     for (int i = 0; i < body.m_rcontacts.size(); ++i)

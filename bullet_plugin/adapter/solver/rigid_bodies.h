@@ -23,8 +23,8 @@ public:
     static const char* reasonForBullet(const btSoftBody& body);
 
     void clear();
-    // Adds the body's contacts and anchors. nodes: with recorded paths.
-    void addRows(const btSoftBody& body, const SolverNodes& nodes, RigidRows& rows);
+    // Adds the body's contacts and anchors. substeps: their number in the step. nodes: with recorded paths.
+    void addRows(const btSoftBody& body, int substeps, const SolverNodes& nodes, RigidRows& rows);
     // Adds a contact of a cloth with the mesh of a dynamic body. dt: s, of Bullet's step. nodes: the cloth's.
     void addRow(const DynamicBody& dynamic, btScalar dt, const SolverContact& contact, const SolverNodes& nodes,
                 const SupportedNodes& supported, RigidRows& rows);

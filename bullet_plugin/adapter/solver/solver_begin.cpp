@@ -54,7 +54,7 @@ void SoftBodySolver::Work::beginOnDevice(const Bodies& bodies)
     {
         if (!isOnDevice(i)) continue;
         SubstepBody* const substeps = substepsAt(*bodies[i]);
-        if (substeps && m_state.m_kept.begin(*bodies[i], m_dt))
+        if (substeps && m_state.m_kept.begin(*bodies[i], substeps->count(), m_dt))
             substeps->predictOnDevice();
         else
             m_state.m_kept.beginBringing(*bodies[i]);
@@ -157,6 +157,7 @@ void SoftBodySolver::Work::beginStep(btScalar dt, std::vector<StepObstacle>& obs
     listPredicted();
     m_parts.m_mirrorMs = watch.lapMs();
     reserveSubsteps();
+    shareSubsteps(dt);
     m_parts.m_readMs = watch.lapMs();
 }
 
@@ -193,6 +194,25 @@ void SoftBodySolver::Work::reserveSubsteps()
     }
     std::sort(byBullet.begin(), byBullet.end());
     if (solved < all.size()) forgetRemoved();
+}
+
+// Gives the bodies that collide with cloth one number of substeps, so that their contacts push both sides at the same
+// time: the largest of theirs. dt: s.
+void SoftBodySolver::Work::shareSubsteps(btScalar dt)
+{
+    int most = 0;
+    std::vector<SubstepBody*> meeting;
+    for (int i = 0; i < m_bodies.size(); ++i)
+    {
+        const btSoftBody& body = *m_bodies[i];
+        if (!body.isActive() || !(dt > 0 && body.m_cfg.timescale > 0)) continue;
+        SubstepBody* const substeps = substepsAt(body);
+        if (!substeps || !m_state.m_selfCollision.has(body)) continue;
+        meeting.push_back(substeps);
+        most = std::max(most, substeps->count());
+    }
+    for (SubstepBody* substeps : meeting)
+        substeps->setSubsteps(most);
 }
 
 // Forgets bodies that are not in the world any more.

@@ -84,6 +84,7 @@ struct SoftBodySolver::Work
     void wakeHit(btScalar dt);
     void listPredicted();
     void reserveSubsteps();
+    void shareSubsteps(btScalar dt);
     void forgetRemoved();
 
     // Parts of solveStep().

@@ -60,20 +60,20 @@ bool SubstepBody::canSolveNow(const btSoftBody& body, ThreadTeam* threads)
     return readLinks(body, threads);
 }
 
-int SubstepBody::substepsOf(const btSoftBody& body)
+int SubstepBody::leastSubstepsOf(const btSoftBody& body)
 {
     return std::max(kLeastSubsteps, body.m_cfg.piterations);
 }
 
-btScalar SubstepBody::pathShift(const btSoftBody& body)
+btScalar SubstepBody::pathShift(const btSoftBody& body, int substeps)
 {
-    const btScalar share = btScalar(Substeps::pathShare(substepsOf(body)));
+    const btScalar share = btScalar(Substeps::pathShare(substeps));
     return (share - 1) * body.m_sst.sdt * body.m_sst.sdt;
 }
 
-btScalar SubstepBody::supportShift(const btSoftBody& body)
+btScalar SubstepBody::supportShift(const btSoftBody& body, int substeps)
 {
-    return btScalar(Substeps::pathShare(substepsOf(body))) * body.m_sst.sdt * body.m_sst.sdt;
+    return btScalar(Substeps::pathShare(substeps)) * body.m_sst.sdt * body.m_sst.sdt;
 }
 
 void SubstepBody::setSupports(const std::vector<Vec3>& supports)
@@ -85,6 +85,7 @@ void SubstepBody::setSupports(const std::vector<Vec3>& supports)
 void SubstepBody::reserve(const btSoftBody& body)
 {
     m_isPredicted = m_isOnDevice = false;
+    m_count = leastSubstepsOf(body);
     const std::size_t count = body.isActive() ? nodeCount(body) : 0;
     if (m_velocities.size() != count) m_velocities.clear();
     if (count == 0) return;
@@ -117,7 +118,8 @@ void SubstepBody::beforePrediction(const btSoftBody& body, ThreadTeam* threads)
 void SubstepBody::afterPrediction(btSoftBody& body, ThreadTeam* threads)
 {
     if (!(body.m_sst.sdt > 0) || m_velocities.size() != nodeCount(body)) return;
-    const btScalar shift = spread() * pathShift(body), supportShift = SubstepBody::supportShift(body);
+    const btScalar shift = spread() * pathShift(body, m_count);
+    const btScalar supportShift = SubstepBody::supportShift(body, m_count);
     const btScalar perSecond = body.m_sst.isdt;
     const btVector3 fall = body.m_worldInfo->m_gravity * body.m_sst.sdt;
     if (!m_isSupported) std::fill(m_supports.begin(), m_supports.end(), vec3(0, 0, 0));
@@ -152,7 +154,8 @@ void SubstepBody::leave(btSoftBody& body)
 {
     m_isPredicted = false;
     changeOver();
-    const btScalar shift = spread() * pathShift(body), supportShift = SubstepBody::supportShift(body);
+    const btScalar shift = spread() * pathShift(body, m_count);
+    const btScalar supportShift = SubstepBody::supportShift(body, m_count);
     for (std::size_t i = 0; fits(body) && i < m_accelerations.size(); ++i)
         body.m_nodes[static_cast<int>(i)].m_x -=
             vectorOf(m_accelerations[i]) * shift + vectorOf(m_supports[i]) * supportShift;
@@ -191,7 +194,8 @@ bool SubstepBody::readLinks(const btSoftBody& body, ThreadTeam* threads)
 {
     const std::size_t count = static_cast<std::size_t>(body.m_links.size());
     std::atomic<bool> isNew{!m_isSorted || m_links.size() != count || m_parts.nodeCount() != nodeCount(body)};
-    std::atomic<bool> isOther{!m_isSet || m_iterations != body.m_cfg.piterations}, joinsOthers{false};
+    const bool isCounted = m_iterations == body.m_cfg.piterations && m_setCount == m_count;
+    std::atomic<bool> isOther{!m_isSet || !isCounted}, joinsOthers{false};
     m_links.resize(count);
     const auto read = [&](std::size_t first, std::size_t last)
     {
@@ -241,8 +245,7 @@ void SubstepBody::setLinks(const btSoftBody& body, ThreadTeam* threads)
             if (link.m_stiffness != stiffness)
             {
                 stiffness = link.m_stiffness;
-                const double share =
-                    visitShare(stiffness, body.m_cfg.piterations, substepsOf(body), Substeps::kLinkSweeps);
+                const double share = visitShare(stiffness, body.m_cfg.piterations, m_count, Substeps::kLinkSweeps);
                 factor = stiffness > 0 ? share / double(stiffness) : 0;
             }
             // Bullet's m_c0 is the sum of the inverse masses divided by the stiffness.
@@ -253,6 +256,7 @@ void SubstepBody::setLinks(const btSoftBody& body, ThreadTeam* threads)
     forRanges(m_links.size(), threads, set);
     m_substeps.links().changed();
     m_iterations = body.m_cfg.piterations;
+    m_setCount = m_count;
     m_isSet = true;
 }
 
@@ -278,8 +282,8 @@ void SubstepBody::begin(const btSoftBody& body, ClothContacts* recorded, const C
         m_alone.m_limit.startStep(m_noFaces);
         m_alone.m_perSecond = static_cast<float>(body.m_sst.isdt);
     }
-    m_substeps.prepare(static_cast<float>(body.m_sst.sdt), substepsOf(body), static_cast<float>(body.m_cfg.kDP),
-                       m_accelerations, m_supports, float(spread()));
+    m_substeps.prepare(static_cast<float>(body.m_sst.sdt), m_count, static_cast<float>(body.m_cfg.kDP), m_accelerations,
+                       m_supports, float(spread()));
 }
 
 void SubstepBody::readPaths(const btSoftBody& body, ClothContacts* recorded, ThreadTeam* threads)
@@ -303,7 +307,7 @@ void SubstepBody::readPaths(const btSoftBody& body, ClothContacts* recorded, Thr
 void SubstepBody::addRows(const btSoftBody& body, const SolverNodes& nodes, RigidBodies& bodies)
 {
     m_rigidRows.clear();
-    bodies.addRows(body, nodes, m_rigidRows);
+    bodies.addRows(body, m_count, nodes, m_rigidRows);
 }
 
 std::size_t SubstepBody::end(ClothContacts& cloth, btSoftBody& body, ThreadTeam* threads)

@@ -36,6 +36,10 @@ public:
     void changeOver() { m_substeps.changeOver(); }
     // Makes room for a step of the body. A body that sleeps needs none.
     void reserve(const btSoftBody& body);
+    // Sets the number of substeps of the coming step, after reserve(). Without a call it is leastSubstepsOf(body).
+    void setSubsteps(int count) { m_count = count; }
+    // Returns the number of substeps of the step that was reserved.
+    int count() const { return m_count; }
     // Records the velocities before the body's prediction, after reserve(). Allocates no memory. threads: null for the
     // caller alone.
     void beforePrediction(const btSoftBody& body, ThreadTeam* threads);
@@ -52,9 +56,9 @@ public:
     // Returns whether the step has begun so, and the nodes have not come since.
     bool isOnDevice() const { return m_isOnDevice; }
     // Returns how far the end of a path in substeps lies from Bullet's prediction, s²: per unit of acceleration, and of
-    // support (nodeSupport()).
-    static btScalar pathShift(const btSoftBody& body);
-    static btScalar supportShift(const btSoftBody& body);
+    // support (nodeSupport()). substeps: their number.
+    static btScalar pathShift(const btSoftBody& body, int substeps);
+    static btScalar supportShift(const btSoftBody& body, int substeps);
     // Returns whether this object solved the last step, and by node how contacts held it then, m/s² (nodeSupport()).
     bool isSupported() const { return m_isSupported; }
     const std::vector<Vec3>& supports() const { return m_supports; }
@@ -69,8 +73,8 @@ public:
     // Returns whether this object solves the coming step.
     bool isPredicted() const { return m_isPredicted; }
 
-    // Returns the number of substeps: piterations, but at least kLeastSubsteps.
-    static int substepsOf(const btSoftBody& body);
+    // Returns the number of substeps that the body asks for: piterations, but at least kLeastSubsteps.
+    static int leastSubstepsOf(const btSoftBody& body);
 
     // Prepares the solver's step, once, after canSolveNow(). recorded: the cloth with the paths that were recorded;
     // null: alone(). mirror: the body's, null if there is none. It names the mesh of a cloth without pairs, so that a
@@ -129,6 +133,8 @@ private:
     std::vector<Prediction> m_predictions;
     std::vector<LinkInput> m_links;  // by link, as last read
     int m_iterations = 0;            // piterations when they were set
+    int m_setCount = 0;              // m_count when they were set
+    int m_count = kLeastSubsteps;    // substeps of the step
     bool m_isSorted = false;         // the links' nodes are those of the sweeps
     bool m_isSet = false;            // the links' lengths and strengths are, too
     ClothParts m_parts;              // by which they are sorted

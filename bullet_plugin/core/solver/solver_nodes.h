@@ -81,7 +81,13 @@ public:
         nodeLimitShift(&m_nodes[node], &m_states[node], perSecond, stepsPerSecond);
     }
 
+    // The share of a contact's push between cloths that counts for the velocity: below 1 where the other cloths' take
+    // longer to become velocity, so that both sides get the same impulse.
+    float pushShare() const { return m_pushShare; }
+    void setPushShare(float share) { m_pushShare = share; }
+
 private:
+    float m_pushShare = 1;
     std::vector<SolverNode> m_nodes;
     std::vector<NodePath> m_paths;
     std::vector<NodeState> m_states;

@@ -191,39 +191,35 @@ void StepSolver::sweepInTurns()
             if (m_rows) m_rows->project(1, DRAPE_TURN_RELAXATION);
         }
     }
-    if (m_rows) m_rows->end(perPushOfRows(false));
+    if (m_rows) m_rows->end(1 / m_slowest->m_substeps->correctionTime());
 }
 
-// Returns the first cloth with rows of cloth with cloth. Its substeps stand for those of all of them.
-const SolverCloth& StepSolver::firstWithRows() const
+// Lets rows of cloth with cloth give both sides the same impulse: a push becomes velocity as in the slowest cloth.
+// Cloths differ after a longer step or one of Bullet's solver, and by their time scales.
+void StepSolver::shareRows(bool closing)
 {
-    const auto meets = [](const ContactSweep* sweep) { return sweep->cloth().m_meetsCloth; };
-    const auto first = std::find_if(m_all.begin(), m_all.end(), meets);
-    return (first == m_all.end() ? m_all.front() : *first)->cloth();
-}
-
-// Returns the velocity that rows of cloth with cloth give per metre in a substep, or after the last one, 1/s. The
-// cloths may differ; it is the first one's.
-float StepSolver::perPushOfRows(bool closing) const
-{
-    if (m_all.empty()) return 0;
-    const SolverCloth& first = firstWithRows();
-    return closing || !first.m_substeps ? perShift(*first.m_contacts) : 1 / first.m_substeps->correctionTime();
+    const auto time = [closing](const SolverCloth& cloth)
+    { return closing ? 1 / cloth.m_contacts->m_perSecond : cloth.m_substeps->correctionTime(); };
+    m_slowest = nullptr;
+    for (const SolverCloth& cloth : m_cloths)
+        if (cloth.m_meetsCloth && (!m_slowest || time(cloth) > time(*m_slowest))) m_slowest = &cloth;
+    for (const SolverCloth& cloth : m_cloths)
+        if (cloth.m_meetsCloth) cloth.m_contacts->m_nodes.setPushShare(time(cloth) / time(*m_slowest));
 }
 
 void StepSolver::beginRows(int iteration)
 {
-    const SolverCloth& first = firstWithRows();
-    m_rows->begin(passedAfter(first, iteration), substepTime(first));
+    m_rows->begin(passedAfter(*m_slowest, iteration), substepTime(*m_slowest));
 }
 
 // Projects rows of cloth with cloth until they hold, or kClosingRowSweeps times. Contacts with obstacles follow.
 void StepSolver::closeRows()
 {
     if (!m_rows) return;
+    shareRows(true);
     m_rows->begin(1, 0);
     m_rows->project(kClosingRowSweeps, 1, kTolerated, kClosingTolerance);
-    m_rows->end(perPushOfRows(true));
+    m_rows->end(perShift(*m_slowest->m_contacts));
 }
 
 // Runs an iteration's limits and contact sweeps.
@@ -270,6 +266,7 @@ void StepSolver::endIteration(int iteration)
 void StepSolver::iterate()
 {
     m_iterating = m_all;
+    if (m_rows) shareRows(false);
     forSubsteps([](SolverNodes& nodes, Substeps& substeps, ThreadTeam* threads) { substeps.begin(nodes, threads); });
     for (int i = 0; !m_iterating.empty(); ++i)
     {
@@ -363,7 +360,7 @@ void StepSolver::close()
     select(m_touching, m_turn, gainsSpeed);
     m_team.limitSpeeds(m_turn);
     forRigid(m_all, [](RigidRows& rigid) { rigid.limitSpeeds(); });
-    if (m_rows && !m_all.empty()) m_rows->limitSpeeds(m_all.front()->contacts().m_perSecond);
+    if (m_rows) m_rows->limitSpeeds(m_slowest->m_contacts->m_perSecond);
     for (ContactSweep* sweep : m_touching)
         sweep->contacts().m_mayHavePassed = SweepTeam::mayHavePassed(*sweep);
     const auto end = [](ContactSweep& sweep)
@@ -474,7 +471,8 @@ std::size_t StepSolver::solve(const std::vector<SolverCloth>& cloths, const std:
 {
     m_touching.clear();
     divide(cloths, free, stage);
-    m_rows = rows && !rows->empty() ? rows : nullptr;
+    const auto meets = [](const SolverCloth& cloth) { return cloth.m_meetsCloth; };
+    m_rows = rows && !rows->empty() && std::any_of(cloths.begin(), cloths.end(), meets) ? rows : nullptr;
     if (!m_onDevice.empty())
     {
         m_packed.pack(m_onDevice, source, *stage);

@@ -61,7 +61,8 @@ public:
     // Solves the cloths and marks them as solved. Cloths with CallersLinks are written back; nodes of others stay where
     // the solver leaves them. free: cloths without contacts, limits or rigid rows. stage: solves the cloths that fit
     // (PackedStep); null if there is none. If the device fails, the host solves them all. Returns the number of cloths
-    // that the device solved. rows: contacts between the cloths, which must all be in `cloths`; stage is null then.
+    // that the device solved. rows: contacts between the cloths, which must all be in `cloths` and have
+    // the same number of substeps; stage is null then.
     std::size_t solve(const std::vector<SolverCloth>& cloths, const std::vector<SolverCloth>& free,
                       const ContactSource& source, SolveStage* stage = nullptr, ClothRows* rows = nullptr);
     // Enqueues the whole step of the cloths, behind a detection whose contacts stay on the device if there is one.
@@ -113,8 +114,7 @@ private:
     void sweepContacts(int iteration);
     void restart(int iteration);
     void sweepInTurns();
-    const SolverCloth& firstWithRows() const;
-    float perPushOfRows(bool closing) const;
+    void shareRows(bool closing);
     void beginRows(int iteration);
     void closeRows();
     void endIteration(int iteration);
@@ -133,6 +133,8 @@ private:
     Cloths m_all, m_touching, m_iterating, m_turn, m_meeting, m_open, m_resting, m_others;
     std::vector<LinkedNodes> m_own;  // working memory of forSubsteps()
     ClothRows* m_rows = nullptr;     // the step's; null for none
+    // The cloth with rows whose pushes become velocity in the longest time; see shareRows().
+    const SolverCloth* m_slowest = nullptr;
     bool m_records = false;
     PackedStep m_packed;
     std::vector<const SolverCloth*> m_keeping;                               // working memory of keepMomenta()

@@ -63,6 +63,7 @@ void ClothRows::add(const ClothContact& contact)
     {
         SolverNodes* const cloth = contact.m_cloths[k];
         const std::uint32_t node = contact.m_nodes[k];
+        row.m_cloths[k] = cloth;
         row.m_nodes[k] = cloth ? cloth->nodes() + node : &m_fixed;
         row.m_states[k] = cloth ? cloth->states() + node : &m_fixedState;
         row.m_starts[k] = cloth ? cloth->start(node) : contact.m_resting[k];
@@ -254,6 +255,17 @@ void ClothRows::project(int sweeps, float relaxation, float tolerated, float eno
     }
 }
 
+// Keeps a part of the phase's push out of the nodes' velocities where their cloths ask for it.
+void ClothRows::sharePush(const Row& row, const Acting& acting, Vec3 push)
+{
+    for (int k = 0; k < 4; ++k)
+    {
+        if (acting.m_shares[k] == 0.0f || row.m_cloths[k]->pushShare() == 1.0f) continue;
+        const float kept = acting.m_shares[k] * (1.0f - row.m_cloths[k]->pushShare());
+        row.m_states[k]->m_before = vec3AddScaled(row.m_states[k]->m_before, push, kept);
+    }
+}
+
 // Adds what the phase pushed to the row's impulse, and keeps it as forces if the phase had a time.
 void ClothRows::endRow(Row& row, const Acting& acting, float perPush) const
 {
@@ -261,6 +273,7 @@ void ClothRows::endRow(Row& row, const Acting& acting, float perPush) const
         for (int k = 0; k < 4; ++k)
             if (acting.m_shares[k] != 0.0f) row.m_states[k]->m_shifted |= DRAPE_NODE_SHIFTED;
     const Vec3 push = vec3AddScaled(acting.m_held, acting.m_normal, acting.m_multiplier);
+    sharePush(row, acting, push);
     if (acting.m_multiplier > 0.0f) row.m_impulse = vec3AddScaled(row.m_impulse, push, perPush);
     if (!(m_time > 0.0f)) return;
     const float perSquare = 1.0f / (m_time * m_time);

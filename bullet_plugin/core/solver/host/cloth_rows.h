@@ -56,8 +56,8 @@ public:
     // Projects the rows that take part `sweeps` times, or until no violation exceeds `enough`. relaxation: share of a
     // violation that is corrected. tolerated: violation that may remain. All are shares of the thickness.
     void project(int sweeps, float relaxation, float tolerated = 0, float enough = 0);
-    // Ends the phase: marks the nodes that it moved. perPush: 1/s, the velocity that the caller gives a node per metre
-    // by which the phase moved it.
+    // Ends the phase: marks the nodes that it moved, and leaves their cloths' SolverNodes::pushShare() of the ways to
+    // be added to the velocities. perPush: 1/s, the velocity that the caller gives a node per metre of that.
     void end(float perPush);
     // Removes from the nodes' velocities what rows gained by recovering a depth that the step began with. perSecond:
     // 1/s, steps per second.
@@ -82,7 +82,8 @@ private:
 
     struct Row
     {
-        SolverNode* m_nodes[4];  // one that does not move has no inverse mass
+        const SolverNodes* m_cloths[4];  // null for a node that does not move in the step
+        SolverNode* m_nodes[4];          // one that does not move has no inverse mass
         NodeState* m_states[4];
         Vec3 m_starts[4];          // m
         float m_inverseMasses[4];  // 1/kg
@@ -120,6 +121,7 @@ private:
     static Acting takePlane(Row& row, float passed);
     static void repeat(const Row& row, float time, Acting& acting);
     void endRow(Row& row, const Acting& acting, float perPush) const;
+    static void sharePush(const Row& row, const Acting& acting, Vec3 push);
     void findKept();
     static void shift(Acting& acting, Vec3 by);
     std::uint32_t groupOf(const Row& row) const;
