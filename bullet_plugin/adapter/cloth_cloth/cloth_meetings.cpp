@@ -8,6 +8,7 @@
 #include "bullet_plugin/adapter/solver/body_nodes.h"
 #include "bullet_plugin/core/backends/device_cloth_search.h"
 #include "bullet_plugin/core/solver/topology/cloth_faces.h"
+#include "bullet_plugin/core/threads/ranges.h"
 
 namespace drape
 {
@@ -15,6 +16,9 @@ namespace
 {
 // Greatest way in a step of a node whose triangles intersect others, and in a second, as shares of the thickness.
 constexpr float kPushedShare = 0.2f, kPushedPerSecond = 12;
+
+// Minimum contacts for sharing them among threads, and those of a range.
+constexpr std::size_t kLeastShared = 2048, kRange = 512;
 
 // Maximum times that the guard is applied to let nodes that stopped each other go on together.
 constexpr int kMostTurns = 8;
@@ -118,6 +122,7 @@ void ClothMeetings::begin(const Bodies& bodies, const std::function<bool(const b
         m_isClean = false;
     }
     m_layout = layout;
+    m_answers.clear(m_members.size());
     noteFilters();
 }
 
@@ -136,12 +141,19 @@ void ClothMeetings::noteFilters()
     for (std::size_t i = 0; i < m_members.size() && hasOwnFilter(*m_members[i].m_body); ++i)
         for (std::size_t k = 0; k < i; ++k)
             answers.add(std::uint64_t(canMeet(i, k)));
-    m_isClean = m_isClean && answers.value() == m_answers;
-    m_answers = answers.value();
+    m_isClean = m_isClean && answers.value() == m_answersHash;
+    m_answersHash = answers.value();
+}
+
+// Returns whether two members collide. Asks once in a step.
+bool ClothMeetings::canMeet(std::size_t a, std::size_t b) const
+{
+    if (!m_answers.isKnown(a, b)) m_answers.set(a, b, mayMeet(a, b));
+    return m_answers.isYes(a, b);
 }
 
 // Returns whether two members collide: as they ask for it, and as Bullet's filters let them.
-bool ClothMeetings::canMeet(std::size_t a, std::size_t b) const
+bool ClothMeetings::mayMeet(std::size_t a, std::size_t b) const
 {
     if (a == b) return m_members[a].m_self->m_meetsItself;
     if (!m_members[a].m_self->m_meetsOthers || !m_members[b].m_self->m_meetsOthers) return false;
@@ -162,38 +174,57 @@ void ClothMeetings::forNodes(const Write& write)
             write(m_members[i], m_members[i].m_body->m_nodes[k], m_set.firstNode(i) + std::size_t(k));
 }
 
-void ClothMeetings::addRow(const Contact& found, std::size_t index)
+// Asks once for each two members of the contacts whether they may meet: filters may be the app's.
+void ClothMeetings::askContacts()
 {
-    const SelfContactView view = m_set.view(found);
+    const std::size_t count = m_members.size();
+    const auto mark = [&](std::size_t first, std::size_t last)
+    {
+        for (std::size_t i = first; i < last; ++i)
+        {
+            const SelfContactView view = m_set.view(m_contacts[i]);
+            const std::size_t a = m_set.memberOf(std::size_t(view.m_nodes[0]));
+            const std::size_t b = m_set.memberOf(std::size_t(view.m_nodes[3]));
+            m_answers.mark(a, b);
+        }
+    };
+    forRanges(m_contacts.size(), kLeastShared, kRange, &m_state.threads(), mark);
+    for (std::size_t a = 0; a < count; ++a)
+        for (std::size_t b = 0; b < count; ++b)
+            if (m_answers.isMarked(a, b)) canMeet(a, b);
+}
+
+// Writes the row of a contact. Returns whether it has one. After askContacts(), on any thread.
+bool ClothMeetings::takeRow(std::size_t index, ClothContact& contact)
+{
+    const SelfContactView view = m_set.view(m_contacts[index]);
     const int split = view.m_kind == DRAPE_SELF_EDGE_EDGE ? 2 : 1;
     const std::size_t first = m_set.memberOf(std::size_t(view.m_nodes[0]));
     const std::size_t second = m_set.memberOf(std::size_t(view.m_nodes[3]));
     const std::uint32_t nodes[4] = {std::uint32_t(view.m_nodes[0]), std::uint32_t(view.m_nodes[1]),
                                     std::uint32_t(view.m_nodes[2]), std::uint32_t(view.m_nodes[3])};
-    if (!isGuarded(nodes)) return;
-    ClothContact contact = {};
-    contact.m_key = ContactRecords::keyOf(found);
+    if (!m_answers.isYes(first, second) || isTangled(nodes)) return false;
+    contact.m_key = ContactRecords::keyOf(m_contacts[index]);
     contact.m_split = split;
     bool moves = false;
     for (int k = 0; k < 4; ++k)
     {
-        Member& member = m_members[k < split ? first : second];
-        const std::size_t node = std::size_t(view.m_nodes[k]);
-        contact.m_cloths[k] = member.m_nodes;
-        contact.m_nodes[k] = std::uint32_t(node - m_set.firstNode(k < split ? first : second));
+        const std::size_t member = k < split ? first : second;
+        contact.m_cloths[k] = m_members[member].m_nodes;
+        contact.m_nodes[k] = nodes[k] - std::uint32_t(m_set.firstNode(member));
         contact.m_ids[k] = nodes[k];
-        contact.m_resting[k] = vec3Load(m_set.start(), std::uint32_t(node));
-        moves = moves || member.m_nodes;
+        contact.m_resting[k] = vec3Load(m_set.start(), nodes[k]);
+        moves = moves || m_members[member].m_nodes;
     }
-    if (!moves) return;
+    if (!moves) return false;
     const btSoftBody &a = *m_members[first].m_body, &b = *m_members[second].m_body;
     contact.m_normal = vec3(view.m_normal[0], view.m_normal[1], view.m_normal[2]);
     contact.m_gap0 = view.m_gap0;
     contact.m_index = std::uint32_t(index);
     contact.m_thickness = std::min(view.m_thickness, m_set.thicknessOf(first, second));
     contact.m_friction = float(std::max(a.m_cfg.kDF, b.m_cfg.kDF));  // Bullet's between soft bodies
-    m_rows.add(contact);
-    m_members[first].m_hasRows = m_members[second].m_hasRows = true;
+    m_answers.noteRow(first, second);
+    return true;
 }
 
 // Returns whether a member starts the step where the last one left it, but for held nodes, which the app may have
@@ -311,12 +342,14 @@ ClothRows& ClothMeetings::find(const NodesOf& nodesOf)
         m_contacts.clear();
         m_state.m_statistics.m_status |= kStepClothsLeftOut;
     }
-    for (std::size_t i = 0; i < m_contacts.size(); ++i)
-        addRow(m_contacts[i], i);
-    std::vector<Vec3> starts(m_rows.empty() ? 0 : m_set.nodeCount());
+    askContacts();
+    std::vector<Vec3> starts(m_contacts.empty() ? 0 : m_set.nodeCount());
     for (std::size_t node = 0; node < starts.size(); ++node)
         starts[node] = vec3Load(m_set.start(), std::uint32_t(node));
-    m_rows.arrange(starts);
+    m_rows.assign(
+        m_contacts.size(), [this](std::size_t i, ClothContact& contact) { return takeRow(i, contact); }, starts);
+    for (std::size_t i = 0; i < m_members.size(); ++i)
+        m_members[i].m_hasRows = m_answers.hasRows(i);
     m_state.m_statistics.m_selfContacts += m_contacts.size();
     m_state.m_statistics.m_clothPairsSkipped += m_set.smoothPairs();
     return m_rows;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "BulletSoftBody/btSoftBody.h"
+#include "bullet_plugin/adapter/cloth_cloth/meeting_answers.h"
 #include "bullet_plugin/adapter/collision/collision_step.h"
 #include "bullet_plugin/adapter/wiring/plugin_state.h"
 #include "bullet_plugin/core/cloth_cloth/cloth_guard.h"
@@ -70,10 +71,12 @@ private:
     void assignSet();
     void noteFilters();
     bool canMeet(std::size_t a, std::size_t b) const;
+    bool mayMeet(std::size_t a, std::size_t b) const;
     btVector3 startOf(std::size_t node) const;
     template <class Write>
     void forNodes(const Write& write);
-    void addRow(const Contact& found, std::size_t index);
+    void askContacts();
+    bool takeRow(std::size_t index, ClothContact& contact);
     ClothPoint pointOf(const SelfContactView& view, int first, int count) const;
     StepContact recordOf(const SelfContactView& view) const;
     void listFlagged();
@@ -98,6 +101,7 @@ private:
     std::vector<Member> m_members;
     ClothSet m_set;
     std::uint64_t m_layout = 0;
+    mutable MeetingAnswers m_answers;  // in this step
     std::vector<Contact> m_contacts;
     ClothRows m_rows;
     ClothGuard m_guard;
@@ -105,7 +109,7 @@ private:
     bool m_wasPushed = false;             // in this step
     std::vector<unsigned char> m_isHeld;  // by node of the set: it goes where Bullet or the app puts it
     std::uint64_t m_step = 0;
-    std::uint64_t m_answers = 0;            // hash of what the world's own filter answers
+    std::uint64_t m_answersHash = 0;        // hash of what the world's own filter answers
     bool m_isClean = false;                 // no triangles met where the last step left the members
     std::vector<std::uint32_t> m_meeting;   // see ClothSet::findMeeting()
     NodeGroups m_tangles;                   // triangles that intersect, directly or through others

@@ -20,8 +20,8 @@ constexpr float kNearBy = 0.25f;
 // starts with all of them hops.
 constexpr float kRepeatedShare = 0.5f;
 
-// Minimum rows for sharing them among threads, and parts of the nodes: more than threads, so that all have work.
-constexpr std::size_t kLeastShared = 2048, kParts = 32;
+// Parts of the nodes: more than threads, so that all have work.
+constexpr std::size_t kParts = 32;
 
 // Writes the weights of the nearest points of two features: positive for the first one's nodes, negative for the
 // second's. positions: m.
@@ -48,16 +48,27 @@ void nearestWeights(const Vec3 positions[4], int split, float weights[4])
 void ClothRows::clear(bool keeps)
 {
     m_kept.resize(keeps ? m_rows.size() : 0);
-    for (const Row& row : m_rows)
-        if (keeps) m_kept[row.m_order] = row.m_kept;
+    const auto keep = [this](std::size_t first, std::size_t last)
+    {
+        for (std::size_t i = first; i < last; ++i)
+            m_kept[m_rows[i].m_order] = m_rows[i].m_kept;
+    };
+    forRanges(m_kept.size(), kLeastShared, kRange, &m_threads, keep);
     m_rows.clear();
     m_time = 0;
 }
 
-void ClothRows::add(const ClothContact& contact)
+// Returns how many nodes a part has.
+std::size_t ClothRows::partSize(std::size_t rows, std::size_t nodes)
 {
-    Row row = {};
-    row.m_order = std::uint32_t(m_rows.size());
+    const std::size_t parts = rows >= kLeastShared ? kParts : 1;
+    return (nodes + parts - 1) / parts;
+}
+
+// Writes a contact's row. Returns its group.
+std::uint32_t ClothRows::takeRow(const ClothContact& contact, Row& row)
+{
+    row = {};
     row.m_kept.m_key = contact.m_key;
     for (int k = 0; k < 4; ++k)
     {
@@ -78,7 +89,7 @@ void ClothRows::add(const ClothContact& contact)
     row.m_distance = contact.m_thickness + targetGap(gap, 0.0f, contact.m_thickness);
     row.m_normal = contact.m_normal;
     row.m_friction = contact.m_friction;
-    m_rows.push_back(row);
+    return groupOf(row);
 }
 
 ThreadTeam* ClothRows::threads() const
@@ -99,36 +110,53 @@ std::uint32_t ClothRows::groupOf(const Row& row) const
     return std::uint32_t(std::max<std::size_t>(group, 1));
 }
 
-// Gives the rows the pushes of the same pairs' rows in the last step.
-void ClothRows::findKept()
+// Gives the contacts of a range the pushes of the same pairs' rows in the last step.
+void ClothRows::findKept(std::size_t first, std::size_t last)
 {
-    auto kept = m_kept.cbegin();
-    for (Row& row : m_rows)
+    const auto isBefore = [](const Kept& kept, std::uint64_t key) { return kept.m_key < key; };
+    auto kept = m_kept.cend();
+    for (std::size_t i = first; i < last; ++i)
     {
+        if (m_groupOf[i] == 0) continue;
+        Row& row = m_unordered[i];
+        if (i == first || kept == m_kept.cend())
+            kept = std::lower_bound(m_kept.cbegin(), m_kept.cend(), row.m_kept.m_key, isBefore);
         while (kept != m_kept.cend() && kept->m_key < row.m_kept.m_key)
             ++kept;
         if (kept != m_kept.cend() && kept->m_key == row.m_kept.m_key) row.m_kept = *kept;
     }
 }
 
-void ClothRows::arrange(const std::vector<Vec3>& positions)
+// Orders the rows by group, and within one as the contacts.
+void ClothRows::arrange()
 {
-    findKept();
-    const std::size_t parts = m_rows.size() >= kLeastShared ? kParts : 1;
-    m_parts.cut(positions, (positions.size() + parts - 1) / parts, &m_threads);
     m_climb.resize(m_parts.leafCount());
     m_firsts.assign(m_parts.groupCount() + 1, 0);
-    for (Row& row : m_rows)
-    {
-        row.m_group = groupOf(row);
-        ++m_firsts[row.m_group + 1];
-    }
+    for (const std::uint32_t group : m_groupOf)
+        if (group != 0) ++m_firsts[group + 1];
     std::partial_sum(m_firsts.begin(), m_firsts.end(), m_firsts.begin());
-    m_unordered.swap(m_rows);
-    m_rows.resize(m_unordered.size());
     m_actingEnds.assign(m_firsts.begin(), m_firsts.end() - 1);
-    for (const Row& row : m_unordered)
-        m_rows[m_actingEnds[row.m_group]++] = row;
+    m_placeOf.resize(m_groupOf.size());
+    m_orderOf.resize(m_groupOf.size());
+    std::uint32_t order = 0;
+    for (std::size_t i = 0; i < m_groupOf.size(); ++i)
+    {
+        if (m_groupOf[i] == 0) continue;
+        m_placeOf[i] = std::uint32_t(m_actingEnds[m_groupOf[i]]++);
+        m_orderOf[i] = order++;
+    }
+    m_rows.resize(order);
+    const auto put = [this](std::size_t first, std::size_t last)
+    {
+        findKept(first, last);
+        for (std::size_t i = first; i < last; ++i)
+        {
+            if (m_groupOf[i] == 0) continue;
+            Row& row = m_rows[m_placeOf[i]] = m_unordered[i];
+            row.m_order = m_orderOf[i];
+        }
+    };
+    forRanges(m_groupOf.size(), kLeastShared, kRange, &m_threads, put);
     m_actingEnds.assign(m_firsts.begin(), m_firsts.end() - 1);
     m_acting.resize(m_rows.size());
     m_actingRows.resize(m_rows.size());

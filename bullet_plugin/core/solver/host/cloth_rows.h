@@ -18,6 +18,7 @@
 #include "bullet_plugin/core/solver/solver_nodes.h"
 #include "bullet_plugin/core/solver/topology/cloth_parts.h"
 #include "bullet_plugin/core/solver/topology/group_climb.h"
+#include "bullet_plugin/core/threads/ranges.h"
 #include "bullet_plugin/core/threads/thread_team.h"
 #include "kernels/lib/solver/contact_row.h"
 
@@ -47,9 +48,25 @@ public:
     // Begins a step. keeps: its contacts' keys name the same features as those of the step before.
     void clear(bool keeps);
     bool empty() const { return m_rows.empty(); }
-    void add(const ClothContact& contact);
-    // Orders the rows, after the last add(). positions: m, of all cloths' nodes.
-    void arrange(const std::vector<Vec3>& positions);
+    // Takes the step's rows, once after clear(). contactAt(i, contact): writes the i-th of `count` contacts; false: it
+    // has no row. It is called on the threads of the team. positions: m, of all cloths' nodes.
+    template <class ContactAt>
+    void assign(std::size_t count, const ContactAt& contactAt, const std::vector<Vec3>& positions)
+    {
+        m_unordered.resize(count);
+        m_groupOf.resize(count);
+        m_parts.cut(positions, partSize(count, positions.size()), &m_threads);
+        const auto take = [&](std::size_t first, std::size_t last)
+        {
+            for (std::size_t i = first; i < last; ++i)
+            {
+                ClothContact contact = {};
+                m_groupOf[i] = contactAt(i, contact) ? takeRow(contact, m_unordered[i]) : 0;
+            }
+        };
+        forRanges(count, kLeastShared, kRange, &m_threads, take);
+        arrange();
+    }
     // Begins a phase: takes the planes where the nodes are now. passed: share of the step that has passed at the
     // phase's end. time: s, of the phase's substep, which starts with the pushes of the one before; 0: with none.
     void begin(float passed, float time);
@@ -89,8 +106,7 @@ private:
         float m_inverseMasses[4];  // 1/kg
         float m_weights[4];        // by node; the second feature's are negative
         std::uint32_t m_ids[4];    // see ClothContact
-        std::uint32_t m_group;
-        std::uint32_t m_order;  // in add()'s
+        std::uint32_t m_order;  // among the contacts that have a row
         Kept m_kept;
         int m_split;        // nodes of the first feature
         float m_gap0;       // m
@@ -117,12 +133,18 @@ private:
         std::uint32_t m_hasMoved;  // nodes, in this phase
     };
 
+    // Minimum rows for sharing them among threads, and rows of a range.
+    static constexpr std::size_t kLeastShared = 2048, kRange = 512;
+
+    static std::size_t partSize(std::size_t rows, std::size_t nodes);
+    std::uint32_t takeRow(const ClothContact& contact, Row& row);
+    void arrange();
     static Vec3 wayOf(const Acting& acting);
     static Acting takePlane(Row& row, float passed);
     static void repeat(const Row& row, float time, Acting& acting);
     void endRow(Row& row, const Acting& acting, float perPush) const;
     static void sharePush(const Row& row, const Acting& acting, Vec3 push);
-    void findKept();
+    void findKept(std::size_t first, std::size_t last);
     static void shift(Acting& acting, Vec3 by);
     std::uint32_t groupOf(const Row& row) const;
     // Calls work(acting row, index of its row) for the group's rows that take part.
@@ -141,6 +163,9 @@ private:
     ClothParts m_parts;
     GroupClimb m_climb;
     std::vector<Row> m_rows, m_unordered;
+    std::vector<std::uint32_t> m_groupOf;  // by contact; 0: it has no row
+    std::vector<std::uint32_t> m_placeOf;  // by contact, in m_rows
+    std::vector<std::uint32_t> m_orderOf;  // by contact, see Row
     std::vector<Kept> m_kept;           // sorted by key; the last step's
     float m_time = 0;                   // s, of the phase's substep; 0: none
     std::vector<std::size_t> m_firsts;  // by group, the first of its rows; then the end
