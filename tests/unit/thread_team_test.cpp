@@ -5,11 +5,13 @@
 #include <atomic>
 #include <cfenv>
 #include <chrono>
+#include <functional>
 #include <stdexcept>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include "bullet_plugin/core/threads/shared_sort.h"
 #include "bullet_plugin/core/threads/thread_team.h"
 #include "tests/support/job_pool.h"
 
@@ -38,6 +40,20 @@ void expectEachOnce(ThreadTeam& team, std::size_t count)
         ASSERT_EQ(calls[item], 1) << "item " << item << " of " << count;
 }
 }  // namespace
+
+TEST_P(ThreadTeamTest, SortsLikeOneThread)
+{
+    for (const std::size_t count : {0u, 1u, 1000u, 16384u, 100001u})
+    {
+        std::vector<unsigned> list(count);
+        for (std::size_t i = 0; i < count; ++i)
+            list[i] = unsigned(i * 2654435761u) % 50021u;
+        std::vector<unsigned> sorted = list;
+        std::sort(sorted.begin(), sorted.end());
+        sharedSort(list, team, std::less<unsigned>());
+        EXPECT_EQ(list, sorted) << count;
+    }
+}
 
 TEST_P(ThreadTeamTest, RunsEachItemOnce)
 {

@@ -25,19 +25,19 @@ double clearanceOf(const ClothSet& set, const FeatureTest& test, const std::uint
     if (separationOf(paths) > 2 * clearance) return clearance;
     return double(kGuardClearance) * double(selfThickness(thickness, set.restDistance(test)));
 }
-}  // namespace
 
-// Calls work(index) for all pairs from the first on.
+// Calls work(index) for all of `count` pairs.
 template <class Work>
-void ClothGuard::eachPair(std::size_t first, ThreadTeam& threads, const Work& work)
+void eachPair(std::size_t count, ThreadTeam& threads, const Work& work)
 {
-    const auto range = [&](std::size_t from, std::size_t to)
+    const auto range = [&](std::size_t first, std::size_t last)
     {
-        for (std::size_t i = from; i < to; ++i)
-            work(first + i);
+        for (std::size_t i = first; i < last; ++i)
+            work(i);
     };
-    forRanges(m_pairs.size() - first, kLeastShared, kRange, &threads, range);
+    forRanges(count, kLeastShared, kRange, &threads, range);
 }
+}  // namespace
 
 // Forgets pairs that were listed before, and notes the others.
 void ClothGuard::dropKnown()
@@ -63,27 +63,35 @@ void ClothGuard::dropOthers(const ClothSet& set, const IsGuarded& isGuarded)
     m_tests.erase(std::remove_if(m_tests.begin(), m_tests.end(), isOther), m_tests.end());
 }
 
+// Returns the pair's paths to these ends.
+FeaturePaths ClothGuard::pathsOf(const ClothSet& set, const Guarded& pair, const float* ends) const
+{
+    FeaturePaths paths;
+    paths.m_split = pair.m_split;
+    for (int k = 0; k < 4; ++k)
+    {
+        paths.m_start[k] = pointAt(set.start(), pair.m_nodes[k]);
+        paths.m_end[k] = pointAt(ends, pair.m_nodes[k]);
+        paths.m_isHeld[k] = (*m_isHeld)[pair.m_nodes[k]] || m_isLeading[pair.m_nodes[k]];
+    }
+    return paths;
+}
+
 // Adds the pairs that were listed last.
-void ClothGuard::takePairs(const ClothSet& set, const std::vector<unsigned char>& isHeld, ThreadTeam& threads)
+void ClothGuard::takePairs(const ClothSet& set, ThreadTeam& threads)
 {
     const std::size_t first = m_pairs.size();
     m_pairs.resize(first + m_tests.size());
-    m_isNew.resize(m_pairs.size(), 0);
+    m_isNew.resize(m_pairs.size());
     const auto take = [&](std::size_t i)
     {
-        Guarded& pair = m_pairs[i];
-        pair.m_paths.m_split = set.nodesOf(m_tests[i - first], pair.m_nodes);
-        for (int k = 0; k < 4; ++k)
-        {
-            pair.m_paths.m_start[k] = pointAt(set.start(), pair.m_nodes[k]);
-            pair.m_paths.m_end[k] = pointAt(m_ends.data(), pair.m_nodes[k]);
-            pair.m_paths.m_isHeld[k] = isHeld[pair.m_nodes[k]] || m_isLeading[pair.m_nodes[k]];
-        }
-        pair.m_clearance = clearanceOf(set, m_tests[i - first], pair.m_nodes, pair.m_paths);
-        pair.m_rests = false;
+        Guarded& pair = m_pairs[first + i];
+        pair.m_split = set.nodesOf(m_tests[i], pair.m_nodes);
+        pair.m_clearance = clearanceOf(set, m_tests[i], pair.m_nodes, pathsOf(set, pair, m_ends.data()));
         pair.m_round = 0;
+        pair.m_rests = false;
     };
-    eachPair(first, threads, take);
+    eachPair(m_tests.size(), threads, take);
 }
 
 // Gives a resting plane to pairs that no moving one keeps apart on the way to where the nodes now end, or to all pairs.
@@ -99,50 +107,53 @@ bool ClothGuard::checkPairs(const ClothSet& set, bool all, ThreadTeam& threads)
                                          [&](std::uint32_t node) { return m_fellIn[node] < pair.m_round; });
         if (isKnown && !all) return;
         pair.m_round = m_round;
-        FeaturePaths now = pair.m_paths;
-        for (int k = 0; k < 4; ++k)
-            now.m_end[k] = pointAt(set.end(), pair.m_nodes[k]);
-        if (!all && stayApart(now, pair.m_clearance)) return;
-        pair.m_plane = separatingPlane(pair.m_paths, pair.m_clearance);
-        pair.m_rests = true;
-        m_isNew[i] = 1;
+        m_isNew[i] = pair.m_rests = all || !stayApart(pathsOf(set, pair, set.end()), pair.m_clearance);
     };
-    eachPair(0, threads, check);
-    return std::find(m_isNew.begin(), m_isNew.end(), 1) != m_isNew.end();
+    eachPair(m_pairs.size(), threads, check);
+    const std::size_t first = m_resting.size();
+    for (std::size_t i = 0; i < m_pairs.size(); ++i)
+    {
+        if (!m_isNew[i]) continue;
+        m_resting.emplace_back();
+        m_resting.back().m_pair = i;
+    }
+    const auto separate = [&](std::size_t i)
+    {
+        Resting& pair = m_resting[first + i];
+        const Guarded& guarded = m_pairs[pair.m_pair];
+        pair.m_paths = pathsOf(set, guarded, m_ends.data());
+        pair.m_plane = separatingPlane(pair.m_paths, guarded.m_clearance);
+    };
+    eachPair(m_resting.size() - first, threads, separate);
+    return first < m_resting.size();
 }
 
 // Lets the pair's nodes go the least share of their paths that its resting plane allows. set: if not null, instead
 // stops nodes at their starts that fail at their rounded ends. Returns whether a share fell.
-bool ClothGuard::shorten(Guarded& pair, const ClothSet* set)
+bool ClothGuard::shorten(const Resting& pair, const ClothSet* set)
 {
     bool fell = false;
     for (int k = 0; pair.m_plane.m_isCertified && k < 4; ++k)
     {
-        double& share = m_shares[pair.m_nodes[k]];
+        const std::uint32_t node = nodesOf(pair)[k];
+        double& share = m_shares[node];
         if (pair.m_paths.m_isHeld[k] || !(share > 0)) continue;
         const double most = set ? 0 : clearShare(pair.m_plane, pair.m_paths, k);
         if (most >= share) continue;
-        if (set && staysClear(pair.m_plane, pair.m_paths, k, pointAt(set->end(), pair.m_nodes[k]))) continue;
+        if (set && staysClear(pair.m_plane, pair.m_paths, k, pointAt(set->end(), node))) continue;
         share = most;
-        m_fellIn[pair.m_nodes[k]] = m_round;
+        m_fellIn[node] = m_round;
         fell = true;
     }
     return fell;
 }
 
-bool ClothGuard::shortenNew()
+// Shortens paths for all pairs from the first resting one on.
+bool ClothGuard::shortenFrom(std::size_t first, const ClothSet* set)
 {
     bool fell = false;
-    for (std::size_t i = 0; i < m_pairs.size(); ++i)
-        if (m_isNew[i]) fell = shorten(m_pairs[i], nullptr) || fell;
-    return fell;
-}
-
-bool ClothGuard::shortenRounded(const ClothSet& set)
-{
-    bool fell = false;
-    for (Guarded& pair : m_pairs)
-        if (pair.m_rests) fell = shorten(pair, &set) || fell;
+    for (std::size_t i = first; i < m_resting.size(); ++i)
+        fell = shorten(m_resting[i], set) || fell;
     return fell;
 }
 
@@ -152,8 +163,9 @@ void ClothGuard::settle(ClothSet& set, ThreadTeam& threads)
     for (int rounds = 1;; ++rounds)
     {
         ++m_round;
+        const std::size_t known = m_resting.size();
         const bool anyNew = checkPairs(set, rounds == kMostRounds, threads);
-        if (!shortenNew() && !anyNew && !shortenRounded(set)) return;
+        if (!shortenFrom(known, nullptr) && !anyNew && !shortenFrom(0, &set)) return;
         place(set);
     }
 }
@@ -169,9 +181,9 @@ void ClothGuard::place(ClothSet& set) const
 }
 
 // Returns whether held nodes leave their sides of a pair's resting plane.
-bool ClothGuard::isForced(const Guarded& pair)
+bool ClothGuard::isForced(const Resting& pair)
 {
-    if (!pair.m_rests || !pair.m_plane.m_isCertified) return false;
+    if (!pair.m_plane.m_isCertified) return false;
     for (int k = 0; k < 4; ++k)
         if (pair.m_paths.m_isHeld[k] && !staysClear(pair.m_plane, pair.m_paths, k, pair.m_paths.m_end[k])) return true;
     return false;
@@ -179,7 +191,7 @@ bool ClothGuard::isForced(const Guarded& pair)
 
 // Returns the feature of a forced pair that goes out of the way: 0, 1, or -1 if neither can. Beside held nodes it is
 // the other one. Of two features that are pushed, it is the one in front.
-int ClothGuard::yielding(const Guarded& pair) const
+int ClothGuard::yielding(const Resting& pair) const
 {
     const int split = pair.m_paths.m_split;
     bool isHeld[2] = {false, false};
@@ -187,7 +199,7 @@ int ClothGuard::yielding(const Guarded& pair) const
     for (int k = 0; k < 4; ++k)
     {
         const bool isSecond = k >= split;
-        isHeld[isSecond] = isHeld[isSecond] || (*m_isHeld)[pair.m_nodes[k]];
+        isHeld[isSecond] = isHeld[isSecond] || (*m_isHeld)[nodesOf(pair)[k]];
         const Vec3d way = pair.m_paths.m_end[k] - pair.m_paths.m_start[k];
         forward += dot(pair.m_plane.m_normal, way) / (isSecond ? 4 - split : split);
     }
@@ -197,7 +209,7 @@ int ClothGuard::yielding(const Guarded& pair) const
 
 // Moves the plane as far as one feature pushes it, and the ends of the other's free nodes with it. These lead from now
 // on. Returns whether a node is to go elsewhere.
-bool ClothGuard::carry(const Guarded& pair)
+bool ClothGuard::carry(const Resting& pair)
 {
     const int split = pair.m_paths.m_split, yields = yielding(pair);
     if (yields < 0) return false;
@@ -208,12 +220,12 @@ bool ClothGuard::carry(const Guarded& pair)
     bool moved = false;
     for (int k = yields == 0 ? 0 : split; k < (yields == 0 ? split : 4); ++k)
     {
-        const std::uint32_t node = pair.m_nodes[k];
+        const std::uint32_t node = nodesOf(pair)[k];
         if ((*m_isHeld)[node]) continue;
         float* const end = m_ends.data() + 3 * node;
         const double side = yields == 0 ? 1 : -1;
         // The end has to be as far from the moved plane as this place is from the resting one.
-        const Vec3d back = -side * (pushed + pair.m_clearance) * pair.m_plane.m_normal;
+        const Vec3d back = -side * (pushed + m_pairs[pair.m_pair].m_clearance) * pair.m_plane.m_normal;
         const double lacking = lackingDistance(pair.m_plane, pair.m_paths, k, pointAt(m_ends.data(), node) + back);
         moved = moved || lacking > 0 || m_shares[node] < 1;
         m_isLeading[node] = 1;
@@ -230,7 +242,7 @@ bool ClothGuard::carry(const Guarded& pair)
 bool ClothGuard::carryForced()
 {
     bool moved = false;
-    for (const Guarded& pair : m_pairs)
+    for (const Resting& pair : m_resting)
         if (isForced(pair)) moved = carry(pair) || moved;
     return moved;
 }
@@ -270,6 +282,7 @@ GuardResult ClothGuard::apply(ClothSet& set, const std::vector<unsigned char>& i
 void ClothGuard::stopAll(ClothSet& set, const std::vector<unsigned char>& isHeld)
 {
     m_pairs.clear();
+    m_resting.clear();
     for (std::size_t node = 0; node < set.nodeCount(); ++node)
         m_shares[node] = isHeld[node] ? 1 : 0;
     place(set);
@@ -283,6 +296,7 @@ GuardResult ClothGuard::applyOnce(ClothSet& set, const std::vector<unsigned char
     m_fellIn.assign(set.nodeCount(), 0);
     m_round = 0;
     m_pairs.clear();
+    m_resting.clear();
     m_known.clear();
     const float reach = 2 * kGuardClearance * set.thickness();
     bool isWhole = set.findPairs(reach, limit, threads, m_tests);
@@ -296,7 +310,7 @@ GuardResult ClothGuard::applyOnce(ClothSet& set, const std::vector<unsigned char
             break;
         }
         dropOthers(set, isGuarded);
-        takePairs(set, isHeld, threads);
+        takePairs(set, threads);
         settle(set, threads);
         m_isMoved.resize(set.nodeCount());
         std::transform(m_shares.begin(), m_shares.end(), m_isMoved.begin(), [](double share) { return share < 1; });
@@ -304,12 +318,13 @@ GuardResult ClothGuard::applyOnce(ClothSet& set, const std::vector<unsigned char
         if (set.findLost(m_isMoved, threads) == 0) break;
         isWhole = set.listLost(reach, limit, threads, m_tests);
     }
+    std::sort(m_resting.begin(), m_resting.end(),
+              [](const Resting& a, const Resting& b) { return a.m_pair < b.m_pair; });
     result.m_pairs = m_pairs.size();
     result.m_shortened =
         std::size_t(std::count_if(m_shares.begin(), m_shares.end(), [](double share) { return share < 1; }));
-    for (const Guarded& pair : m_pairs)
+    for (const Resting& pair : m_resting)
     {
-        if (!pair.m_rests) continue;
         result.m_startMeeting += !pair.m_plane.m_isCertified;
         result.m_forced += isForced(pair);
     }

@@ -56,9 +56,9 @@ public:
     template <class Visit>
     void forFlagged(const Visit& visit) const
     {
-        for (const Guarded& pair : m_pairs)
-            if (pair.m_rests && (!pair.m_plane.m_isCertified || isForced(pair)))
-                visit(pair.m_nodes, pair.m_paths.m_split, pair.m_plane.m_isCertified);
+        for (const Resting& pair : m_resting)
+            if (!pair.m_plane.m_isCertified || isForced(pair))
+                visit(nodesOf(pair), pair.m_paths.m_split, pair.m_plane.m_isCertified);
     }
     // Calls visit(nodes) for each pair that the last apply() checked.
     template <class Visit>
@@ -72,9 +72,9 @@ public:
     void forStopped(const Visit& visit) const
     {
         const auto isStopped = [this](std::uint32_t node) { return m_shares[node] < 1; };
-        for (const Guarded& pair : m_pairs)
-            if (pair.m_rests && pair.m_plane.m_isCertified && std::any_of(pair.m_nodes, pair.m_nodes + 4, isStopped))
-                visit(pair.m_nodes);
+        for (const Resting& pair : m_resting)
+            if (pair.m_plane.m_isCertified && std::any_of(nodesOf(pair), nodesOf(pair) + 4, isStopped))
+                visit(nodesOf(pair));
     }
     // Returns whether held nodes carried a node in the last apply(): its path is another one then.
     bool isCarried(std::size_t node) const { return m_isCarried[node] != 0; }
@@ -83,36 +83,43 @@ private:
     struct Guarded
     {
         std::uint32_t m_nodes[4];
-        FeaturePaths m_paths;
-        double m_clearance;       // m
-        SeparatingPlane m_plane;  // if m_rests
-        bool m_rests;             // the pair has a resting plane
-        std::uint32_t m_round;    // the last check's; 0: none
+        std::uint32_t m_round;  // the last check's; 0: none
+        std::int32_t m_split;   // see FeaturePaths
+        double m_clearance;     // m
+        bool m_rests;           // the pair is one of m_resting
+    };
+
+    // A pair with a resting plane.
+    struct Resting
+    {
+        std::size_t m_pair;    // in m_pairs
+        FeaturePaths m_paths;  // the whole ones
+        SeparatingPlane m_plane;
     };
 
     GuardResult applyOnce(ClothSet& set, const std::vector<unsigned char>& isHeld, const IsGuarded& isGuarded,
                           std::uint64_t limit, ThreadTeam& threads);
     void stopAll(ClothSet& set, const std::vector<unsigned char>& isHeld);
-    template <class Work>
-    void eachPair(std::size_t first, ThreadTeam& threads, const Work& work);
     void dropKnown();
     void dropOthers(const ClothSet& set, const IsGuarded& isGuarded);
-    void takePairs(const ClothSet& set, const std::vector<unsigned char>& isHeld, ThreadTeam& threads);
+    const std::uint32_t* nodesOf(const Resting& pair) const { return m_pairs[pair.m_pair].m_nodes; }
+    FeaturePaths pathsOf(const ClothSet& set, const Guarded& pair, const float* ends) const;
+    void takePairs(const ClothSet& set, ThreadTeam& threads);
     void settle(ClothSet& set, ThreadTeam& threads);
     bool checkPairs(const ClothSet& set, bool all, ThreadTeam& threads);
-    bool shorten(Guarded& pair, const ClothSet* set);
-    bool shortenNew();
-    bool shortenRounded(const ClothSet& set);
+    bool shorten(const Resting& pair, const ClothSet* set);
+    bool shortenFrom(std::size_t first, const ClothSet* set);
     void place(ClothSet& set) const;
-    static bool isForced(const Guarded& pair);
-    int yielding(const Guarded& pair) const;
-    bool carry(const Guarded& pair);
+    static bool isForced(const Resting& pair);
+    int yielding(const Resting& pair) const;
+    bool carry(const Resting& pair);
     bool carryForced();
 
     std::vector<FeatureTest> m_tests;  // pairs that were listed last
     std::vector<FeatureTest> m_known;  // all that were listed, in canonical order
     std::vector<Guarded> m_pairs;
-    std::vector<unsigned char> m_isNew;    // by pair: it got its resting plane in this round
+    std::vector<Resting> m_resting;
+    std::vector<unsigned char> m_isNew;    // by pair: it needs a resting plane from this round on
     std::uint32_t m_round = 0;             // counted from the start of applyOnce()
     std::vector<std::uint32_t> m_fellIn;   // by node: the round in which its share fell last, 0: in none
     std::vector<unsigned char> m_isMoved;  // by node: it does not go its whole path

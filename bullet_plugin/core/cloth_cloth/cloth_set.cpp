@@ -7,6 +7,7 @@
 #include "bullet_plugin/core/exact/triangles.h"
 #include "bullet_plugin/core/probe/mesh_probe.h"
 #include "bullet_plugin/core/threads/ranges.h"
+#include "bullet_plugin/core/threads/shared_sort.h"
 
 namespace drape
 {
@@ -189,7 +190,7 @@ bool ClothSet::findPairs(float reach, std::uint64_t limit, ThreadTeam& threads, 
     const bool isWhole = listPairs(stepFor(reach, 1.0f, false), limit, threads, pairs);
     m_smoothPairs = m_patches->counts().m_smoothPairs;
     if (!isWhole) return false;
-    std::sort(pairs.begin(), pairs.end(), isBefore);
+    sharedSort(pairs, threads, isBefore);
     return true;
 }
 
@@ -207,7 +208,7 @@ bool ClothSet::listLost(float reach, std::uint64_t limit, ThreadTeam& threads, s
 {
     m_patches->cullLost(stepFor(reach, 1.0f, false), limit, threads);
     if (!m_patches->copyTests(limit, pairs)) return false;
-    std::sort(pairs.begin(), pairs.end(), isBefore);
+    sharedSort(pairs, threads, isBefore);
     return true;
 }
 

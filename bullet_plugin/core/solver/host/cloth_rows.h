@@ -106,7 +106,7 @@ private:
         float m_inverseMasses[4];  // 1/kg
         float m_weights[4];        // by node; the second feature's are negative
         std::uint32_t m_ids[4];    // see ClothContact
-        std::uint32_t m_order;  // among the contacts that have a row
+        std::uint32_t m_order;     // among the contacts that have a row
         Kept m_kept;
         int m_split;        // nodes of the first feature
         float m_gap0;       // m
@@ -166,10 +166,10 @@ private:
     std::vector<std::uint32_t> m_groupOf;  // by contact; 0: it has no row
     std::vector<std::uint32_t> m_placeOf;  // by contact, in m_rows
     std::vector<std::uint32_t> m_orderOf;  // by contact, see Row
-    std::vector<Kept> m_kept;           // sorted by key; the last step's
-    float m_time = 0;                   // s, of the phase's substep; 0: none
-    std::vector<std::size_t> m_firsts;  // by group, the first of its rows; then the end
-    std::vector<Acting> m_acting;       // by group, from m_firsts on: rows that take part
+    std::vector<Kept> m_kept;              // sorted by key; the last step's
+    float m_time = 0;                      // s, of the phase's substep; 0: none
+    std::vector<std::size_t> m_firsts;     // by group, the first of its rows; then the end
+    std::vector<Acting> m_acting;          // by group, from m_firsts on: rows that take part
     std::vector<std::uint32_t> m_actingRows;
     std::vector<std::size_t> m_actingEnds;  // by group, in m_acting
     std::vector<float> m_worst;             // by group, the violation that the last sweep met
