@@ -1,4 +1,4 @@
-// Whether the members of a step may meet, two by two, as far as that was asked.
+// The answers to the question which members of a step may meet, two by two, as far as it was asked.
 //
 // Threads may mark pairs, note rows and read answers side by side. One thread sets the answers. Cost: a byte for each
 // two members, cleared in every step.
