@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <random>
 
 #include "BulletSoftBody/btSoftBodyHelpers.h"
 #include "oracle/exact_predicates.h"
@@ -625,5 +626,62 @@ TEST(ClothMeetings, ClothThatDoesNotMoveSharesNoSubsteps)
     EXPECT_EQ(ends[0], ends[1]);
     EXPECT_EQ(ends[0], ends[2]);
     EXPECT_NE(ends[0], ends[3]);
+}
+
+// Adds two or three free sheets of a few nodes that fly into each other and turn. The caller owns them.
+void throwSheets(Layers& layers, unsigned seed)
+{
+    std::mt19937 generator(seed);
+    const auto random = [&](btScalar low, btScalar high)
+    { return low + (high - low) * btScalar(generator() % 1000) / 1000; };
+    const auto randomVector = [&](btScalar most)
+    {
+        const btScalar x = random(-most, most), y = random(-most, most), z = random(-most, most);
+        return btVector3(x, y, z);
+    };
+    layers.turnGravityOff();
+    const int count = 2 + int(generator() % 2);
+    for (int k = 0; k < count; ++k)
+    {
+        const int nodes = 3 + int(generator() % 3);
+        const btVector3 centre = randomVector(0.15f) * btVector3(1, 0.1f, 1) + btVector3(0, 0.1f * btScalar(k), 0);
+        const btVector3 u = randomVector(0.03f) + btVector3(0.3f, 0, 0),
+                        v = randomVector(0.03f) + btVector3(0, 0, 0.3f);
+        btSoftBody* const cloth =
+            btSoftBodyHelpers::CreatePatch(layers.m_world.world().getWorldInfo(), centre - u - v, centre + u - v,
+                                           centre - u + v, centre + u + v, nodes, nodes, 0, true);
+        cloth->getCollisionShape()->setMargin(0.004f);
+        cloth->m_cfg.piterations = 5;
+        cloth->setTotalMass(random(0.1f, 1));
+        const btVector3 velocity = randomVector(1) + btVector3(0, k == 0 ? 1 : -1, 0), spin = randomVector(5);
+        for (int i = 0; i < cloth->m_nodes.size(); ++i)
+            cloth->m_nodes[i].m_v = velocity + spin.cross(cloth->m_nodes[i].m_x - centre);
+        layers.m_plugin.setSelfCollision(*cloth, true);
+        layers.m_world.world().addSoftBody(cloth);
+        layers.m_cloths.push_back(cloth);
+    }
+}
+
+TEST(ClothMeetings, FreeSheetsThatHookIntoEachOtherGainLittleEnergy)
+{
+    for (unsigned seed = 0; seed < 20; ++seed)
+    {
+        Layers layers(hostSettings(), 0, 0);
+        throwSheets(layers, seed);
+        const btScalar start = motionOf(layers);
+        btScalar most = start;
+        for (int step = 0; step < 60; ++step)
+        {
+            layers.m_world.step();
+            most = std::max(most, motionOf(layers));
+        }
+        EXPECT_LT(most, 1.5f * start) << seed;
+        for (btSoftBody* cloth : layers.m_cloths)
+        {
+            layers.m_world.world().removeSoftBody(cloth);
+            layers.m_plugin.setSelfCollision(*cloth, false);
+            delete cloth;
+        }
+    }
 }
 }  // namespace drape::test

@@ -587,6 +587,17 @@ void ClothMeetings::listFlagged()
                        { add(nodes, split, 4, isForced ? PairFlag::Forced : PairFlag::Touches); });
 }
 
+float ClothMeetings::impactShare(const btSoftBody& body) const
+{
+    const auto isBody = [&](const Member& member) { return member.m_body == &body; };
+    const auto found = std::find_if(m_members.begin(), m_members.end(), isBody);
+    if (found == m_members.end()) return 0;
+    const std::size_t member = std::size_t(found - m_members.begin());
+    const auto first = m_isShared.begin() + std::ptrdiff_t(m_set.firstNode(member));
+    const auto last = m_isShared.begin() + std::ptrdiff_t(m_set.firstNode(member + 1));
+    return float(std::count(first, last, 1)) / float(last - first);
+}
+
 void ClothMeetings::addNear(BodySet& bodies) const
 {
     const auto add = [&](const std::uint32_t* nodes)

@@ -47,6 +47,8 @@ public:
     // moved. Adds to the statistics. carries: held nodes carry other cloth along. fixed: bodies that touch something
     // that takes the momentum of nodes that stop.
     const std::vector<btSoftBody*>& guard(bool carries, const BodySet& fixed);
+    // Returns the share of the body's nodes that went on together with others that they stopped, in the last guard().
+    float impactShare(const btSoftBody& body) const;
     // Adds the contacts of find() with what the solver's rows gave.
     void record(ContactRecords& records) const;
     // Adds the members with features near those of bodies of the set, by the last guard().

@@ -22,6 +22,10 @@ namespace
 // room, they go through it, and the pairs are flagged.
 constexpr int kClosedGuardRounds = 2, kCarryingGuardRounds = 4, kMostGuardRounds = 8;
 
+// Share of a cloth's nodes above which an impact makes its links correct errors slowly. Free sheets of a few nodes that
+// are hooked into each other gained energy without bound; large ones with few nodes in impacts would only get soft.
+constexpr float kMostImpactShare = 0.1f;
+
 // Returns the number of elements that the step's memory is proportional to.
 std::size_t elementsOf(const StepStatistics& step)
 {
@@ -166,6 +170,10 @@ void SoftBodySolver::Work::guardMeetings(BodySet fixed)
         std::vector<const btSoftBody*> moved;
         for (btSoftBody* body : m_meetings.guard(round <= kCarryingGuardRounds, fixed))
         {
+            // The guard left links stretched that the solver had satisfied. Corrected at the speed of a substep, they
+            // would drive the cloth in every step.
+            SubstepBody* const substeps = substepsOf(*body);
+            if (substeps && m_meetings.impactShare(*body) > kMostImpactShare) substeps->changeOver();
             const bool isOut = holdInBounds(m_state, *body, contactsOf(*body));
             if (isOut) fixed.insert(body);
             if (isOut) m_state.m_statistics.m_status |= kStepMotionHeldBack;

@@ -32,7 +32,7 @@ public:
     // too. Reads the links. threads: null for the caller alone.
     bool canSolveNow(const btSoftBody& body, ThreadTeam* threads);
 
-    // Records that Bullet solved the step before.
+    // Records that Bullet solved the step before, or that a good part of the nodes was put elsewhere after it.
     void changeOver() { m_substeps.changeOver(); }
     // Makes room for a step of the body. A body that sleeps needs none.
     void reserve(const btSoftBody& body);

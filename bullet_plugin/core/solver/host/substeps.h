@@ -52,8 +52,8 @@ public:
     // (nodeSupport()). Both must stay in place until the last substep. spread: see spread().
     void prepare(float time, int count, float damping, const std::vector<Vec3>& accelerations,
                  const std::vector<Vec3>& supports, float spread = 1);
-    // Records that another solver made the step before: it may have left other errors than substeps do. Call before
-    // prepare().
+    // Records that another solver made the step before, or that a good part of the nodes was put elsewhere after it:
+    // links may have other errors than substeps leave. Call before prepare().
     void changeOver() { m_changesOver = true; }
     // Returns the share s in the motion of a free node in a step: time · velocity + s · time² · acceleration.
     static float pathShare(int count) { return 0.5f * (1.0f + 1.0f / float(count)); }
