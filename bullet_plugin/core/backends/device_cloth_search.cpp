@@ -116,17 +116,18 @@ bool DeviceClothSearch::complete(const Enqueue& enqueue)
         if (m_device->failed()) return false;
         const StepCounters& counters = *m_countersRead.data();
         const std::uint64_t most = m_device->maxAllocationBytes() / sizeof(Contact) / 2;
-        const std::uint64_t demand = std::max({counters.m_selfPairs, counters.m_selfTests, counters.m_contactsFound});
-        if (demand > std::min(m_limit, most)) return false;
+        if (std::max(counters.m_selfPairs, counters.m_selfTests) > std::min(m_limit, most)) return false;
+        if (counters.m_contactsFound > std::min(m_mostContacts, most)) return false;
         if (!grow()) return true;
         enqueue();
     }
 }
 
 bool DeviceClothSearch::findContacts(const Scene& scene, const SelfReach& reach, float reachScale, std::uint64_t limit,
-                                     std::vector<Contact>& contacts)
+                                     std::uint64_t most, std::vector<Contact>& contacts)
 {
     contacts.clear();
+    m_mostContacts = most;
     if (m_device->failed()) return false;
     begin(scene, reach, reachScale, limit);
     enqueueContacts();

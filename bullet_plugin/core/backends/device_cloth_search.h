@@ -45,10 +45,10 @@ public:
     void forgetScene() { m_cloths.forget(); }
 
     // Finds the contacts along the paths, in canonical order. reachScale: reach per thickness. limit: of pairs of
-    // features, and of contacts. Returns false, with no contacts, if the device failed or has no room, or if there are
-    // more: the host knows fewer pairs, and decides.
+    // features. most: of contacts. Returns false, with no contacts, if the device failed or has no room, or if there
+    // are more: the host knows fewer pairs, and decides.
     bool findContacts(const Scene& scene, const SelfReach& reach, float reachScale, std::uint64_t limit,
-                      std::vector<Contact>& contacts);
+                      std::uint64_t most, std::vector<Contact>& contacts);
     // Begins the search for pairs of features whose paths come within the reach, and ends it. As above; in any order.
     void submitPairs(const Scene& scene, const SelfReach& reach, std::uint64_t limit);
     bool finishPairs(std::vector<FeatureTest>& pairs);
@@ -76,6 +76,6 @@ private:
     Staging<FeatureTest> m_pairsRead;
     std::size_t m_contactsAsked = 0, m_pairsAsked = 0;  // read before their number is known
     float m_reachScale = 1;
-    std::uint64_t m_limit = 0;
+    std::uint64_t m_limit = 0, m_mostContacts = 0;
 };
 }  // namespace drape
