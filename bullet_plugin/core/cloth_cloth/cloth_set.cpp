@@ -270,8 +270,7 @@ bool ClothSet::findContacts(float reachScale, std::uint64_t mostPairs, std::uint
 {
     const SelfStep step = stepFor(m_thickness * reachScale, reachScale, true);
     m_smoothPairs = 0;
-    if (m_search && m_search->findContacts(*m_scene, m_reach, reachScale, mostPairs, most, contacts))
-        return true;
+    if (m_search && m_search->findContacts(*m_scene, m_reach, reachScale, mostPairs, most, contacts)) return true;
     m_patches->cull(step, mostPairs, threads);
     m_smoothPairs = m_patches->counts().m_smoothPairs;
     contacts.clear();
