@@ -9,7 +9,7 @@ import numpy
 
 from . import _drape
 from .arrays import Array, Floats, Indices, floats, indices
-from .settings import Settings
+from .settings import Settings, binding_of
 
 #: Kind of a pair of features: a vertex and a face.
 VERTEX_FACE = 0
@@ -100,7 +100,7 @@ class Queries:
 
         Raises ValueError if a setting is out of range, and DeviceError if the requested device is missing.
         """
-        self._own = _drape.Queries((settings or Settings())._for_binding())
+        self._own = _drape.Queries(binding_of(settings))
 
     @property
     def device(self) -> Dict[str, Any]:

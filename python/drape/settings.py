@@ -54,6 +54,11 @@ class Settings:
     cache_folder: str = ""
     log: Optional[Callable[[str], None]] = log_to_standard_error
 
+    def __setattr__(self, name: str, value: Any) -> None:
+        if name not in type(self).__dataclass_fields__:
+            raise AttributeError(f"Settings has no field {name!r}")
+        super().__setattr__(name, value)
+
     def _for_binding(self) -> Dict[str, Any]:
         """Returns the fields with numbers for choices. Raises ValueError for an unknown choice."""
         fields = {field.name: getattr(self, field.name) for field in dataclasses.fields(self)}
@@ -65,6 +70,15 @@ class Settings:
         if self.log is not None and not callable(self.log):
             raise TypeError("Settings.log should be a function or None")
         return fields
+
+
+def binding_of(settings: Optional[Settings]) -> Dict[str, Any]:
+    """Returns the fields of the settings, by default those of Settings(), for the binding. Raises TypeError."""
+    if settings is None:
+        settings = Settings()
+    if not isinstance(settings, Settings):
+        raise TypeError(f"settings should be a drape.Settings, such as Settings(backend=\"host\"), not {settings!r}")
+    return settings._for_binding()
 
 
 class StepStatus(enum.IntFlag):
@@ -95,4 +109,4 @@ def list_devices() -> List[Dict[str, Any]]:
 
 def why_no_device(settings: Optional[Settings] = None) -> str:
     """Returns "" if the device is available that the settings request, otherwise the reason in one line."""
-    return _drape.why_no_device((settings or Settings())._for_binding())
+    return _drape.why_no_device(binding_of(settings))

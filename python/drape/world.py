@@ -7,7 +7,7 @@ import numpy
 
 from . import _drape
 from .arrays import Array, Floats, Indices, floats, indices, numbers
-from .settings import Settings, StepStatus
+from .settings import Settings, StepStatus, binding_of
 
 
 class ClothWorld:
@@ -22,7 +22,7 @@ class ClothWorld:
 
         Raises ValueError if a setting is out of range, and DeviceError if the requested device is missing.
         """
-        self._own = _drape.World((settings or Settings())._for_binding())
+        self._own = _drape.World(binding_of(settings))
         self.set_gravity(gravity)
 
     def set_gravity(self, gravity: Sequence[float]) -> None:

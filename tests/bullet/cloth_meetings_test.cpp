@@ -233,6 +233,20 @@ TEST(ClothMeetings, ClothsThatMayMeetFromNowOnAreChecked)
     }
 }
 
+TEST(ClothMeetings, WhyStockKnowsSelfCollisionAndFilters)
+{
+    Layers layers(hostSettings(), 2, 0.03f, false);
+    btSoftBody &a = *layers.m_cloths[0], &b = *layers.m_cloths[1];
+    EXPECT_NE(layers.m_plugin.whyStock(&a, &b).find("setSelfCollision"), std::string::npos);
+    EXPECT_NE(layers.m_plugin.whyStock(&a, &a).find("setSelfCollision"), std::string::npos);
+    layers.m_plugin.setSelfCollision(a, true);
+    layers.m_plugin.setSelfCollision(b, true);
+    EXPECT_EQ(layers.m_plugin.whyStock(&a, &b), "");
+    EXPECT_EQ(layers.m_plugin.whyStock(&a, &a), "");
+    a.setIgnoreCollisionCheck(&b, true);
+    EXPECT_NE(layers.m_plugin.whyStock(&a, &b).find("filters"), std::string::npos);
+}
+
 // Bullet's passes against drift put the nodes' ends where their starts were.
 TEST(ClothMeetings, BodiesThatDriftAreKeptApart)
 {

@@ -50,6 +50,32 @@ std::size_t pairsOf(const btSoftBody& cloth, const TriangleMesh& mesh, const btR
 }
 }  // namespace
 
+// One edge of the cloth is anchored to a box beside it, nearer than the thickness. Contacts would push the box away
+// from nodes that go with it.
+TEST(DynamicBodies, CarryClothThatIsAnchoredNearTheirSurface)
+{
+    for (const btScalar gap : {btScalar(0.003), btScalar(0.008), btScalar(0.0101)})
+    {
+        btBoxShape shape(btVector3(0.1f, 0.1f, 0.5f));
+        Plugin plugin(hostSettings());
+        DropWorld world(&plugin);
+        ClothSpec spec;
+        spec.m_nodes = 21;
+        btSoftBody& cloth = world.addCloth(spec);
+        btRigidBody& box = world.addDynamic(shape, 2, at(0.6f + gap, 0, 0));
+        for (int i = 0; i < cloth.m_nodes.size(); ++i)
+            if (cloth.m_nodes[i].m_x.x() > 0.49f) cloth.appendAnchor(i, &box);
+        for (int step = 0; step < 60; ++step)
+        {
+            world.step();
+            ASSERT_LT(box.getLinearVelocity().length(), 12) << gap << " " << step;
+            ASSERT_LT(rmsSpeed(cloth), 12) << gap << " " << step;
+        }
+        EXPECT_EQ(plugin.statistics().m_status, std::uint32_t(kStepGood)) << gap;
+        EXPECT_LT(box.getWorldTransform().getOrigin().y(), -1) << gap;
+    }
+}
+
 // A ball in free space flies into a cloth, away from its middle.
 class MomentumOfCloth : public testing::TestWithParam<float>  // the ball's mass, kg; the cloth has 1
 {

@@ -81,6 +81,15 @@ def test_defaults_of_arguments_are_those_of_cpp(method, defaults):
             for name, default in defaults.items()} == defaults
 
 
+def test_settings_are_settings():
+    for call in (drape.ClothWorld, drape.Queries, drape.why_no_device):
+        with pytest.raises(TypeError, match="Settings"):
+            call("host")
+    settings = drape.Settings()
+    with pytest.raises(AttributeError, match="devicee"):
+        settings.devicee = "x"
+
+
 def test_settings_that_cannot_be_used_raise():
     with pytest.raises(ValueError, match='Settings.mode is "?\'?fast.*"discrete", "continuous", "automatic"'):
         drape.Queries(drape.Settings(mode="fast"))

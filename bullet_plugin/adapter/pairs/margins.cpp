@@ -100,12 +100,12 @@ std::string marginRemark(const btSoftBody& cloth, const btCollisionShape& obstac
 {
     char line[256];
     const double own = double(cloth.getCollisionShape()->getMargin()), other = double(obstacle.getMargin());
-    if (own < 0)
+    if (!(own >= 0))
     {
         std::snprintf(line, sizeof(line), "the soft body's collision margin is negative (%g m) and counts as 0", own);
         return line;
     }
-    if (other < 0)
+    if (!(other >= 0))
     {
         std::snprintf(
             line, sizeof(line),

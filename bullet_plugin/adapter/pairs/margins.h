@@ -12,10 +12,10 @@ namespace drape
 // Minimum thickness, m: both margins may be zero, but the pipeline needs a positive thickness.
 constexpr btScalar kMinThickness = btScalar(1e-4);
 
-// Returns the margin, m; a negative one counts as 0, since Bullet accepts any number.
+// Returns the margin, m; a negative one, or one that is no number, counts as 0: Bullet accepts any.
 inline btScalar marginOf(const btCollisionShape& shape)
 {
-    return std::max(btScalar(0), shape.getMargin());
+    return shape.getMargin() > 0 ? shape.getMargin() : btScalar(0);
 }
 
 // Returns the distance at which cloth comes to rest, m.

@@ -5,6 +5,25 @@
 
 namespace drape
 {
+namespace
+{
+// A gap at which a row never acts, m.
+constexpr float kFarAway = 1e18f;
+
+// Returns whether one of up to three nodes is anchored to the object; -1: none. A contact would push the object away
+// from a node that goes with it, and the anchor would pull it back.
+bool isAnchoredTo(const btSoftBody& body, const btCollisionObject& object, const int nodes[3])
+{
+    for (int i = 0; i < body.m_anchors.size(); ++i)
+    {
+        const btSoftBody::Anchor& anchor = body.m_anchors[i];
+        const int node = int(anchor.m_node - &body.m_nodes[0]);
+        if (anchor.m_body == &object && std::find(nodes, nodes + 3, node) != nodes + 3) return true;
+    }
+    return false;
+}
+}  // namespace
+
 // Returns the number of nodes of a body whose links the core solves in this step; 0 for others.
 std::size_t SoftBodySolver::Work::substepNodes(const btSoftBody& body) const
 {
@@ -57,8 +76,11 @@ void SoftBodySolver::Work::addDynamicRows(SubstepBody& substeps, const BodyConta
     if (body.m_dynamicContacts.empty()) return;
     const ContactSource& source = m_state.m_found.source();
     for (const DynamicContact& dynamic : body.m_dynamicContacts)
-        substeps.addRow(dynamic.m_body, m_dt, body.m_contacts.resolve(source, *dynamic.m_contact),
-                        body.m_contacts.m_nodes, m_supported, m_rigidBodies);
+    {
+        SolverContact contact = body.m_contacts.resolve(source, *dynamic.m_contact);
+        if (isAnchoredTo(*body.m_body, *dynamic.m_body.m_object, contact.m_nodes)) contact.m_gaps.m_start = kFarAway;
+        substeps.addRow(dynamic.m_body, m_dt, contact, body.m_contacts.m_nodes, m_supported, m_rigidBodies);
+    }
 }
 
 // Finds the nodes that cannot give way to dynamic bodies.

@@ -6,6 +6,7 @@
 
 #include "BulletCollision/CollisionDispatch/btCollisionWorld.h"
 #include "BulletCollision/CollisionShapes/btCompoundShape.h"
+#include "bullet_plugin/adapter/cloth_cloth/soft_body_filters.h"
 #include "bullet_plugin/adapter/pairs/eligibility.h"
 #include "bullet_plugin/adapter/wiring/diagnosis.h"
 #include "bullet_plugin/adapter/wiring/plugin_state.h"
@@ -41,7 +42,20 @@ std::string reasonInShape(const PluginState& state, const btSoftBody& cloth, con
     return std::string();
 }
 
-std::string reasonOf(const PluginState& state, const btCollisionObject* objectA, const btCollisionObject* objectB)
+// Returns why Bullet's own algorithm has a soft body with another one, or with itself; empty if Drape has.
+std::string reasonBetween(PluginState& state, const btSoftBody& body, const btSoftBody& other)
+{
+    const SelfColliding *const first = state.m_selfCollision.find(body), *const second =
+                                                                             state.m_selfCollision.find(other);
+    if (&body == &other)
+        return first && first->m_meetsItself ? std::string()
+                                             : "the soft body's self collision is off: Plugin::setSelfCollision";
+    if (!first || !second || !first->m_meetsOthers || !second->m_meetsOthers)
+        return "both objects are soft bodies, which Plugin::setSelfCollision of both lets collide";
+    return filtersLetMeet(body, other) ? std::string() : "Bullet's filters keep the two soft bodies apart";
+}
+
+std::string reasonOf(PluginState& state, const btCollisionObject* objectA, const btCollisionObject* objectB)
 {
     if (!objectA || !objectB) return "one of the objects is missing";
     const btSoftBody* cloth = btSoftBody::upcast(objectA);
@@ -53,7 +67,7 @@ std::string reasonOf(const PluginState& state, const btCollisionObject* objectA,
     }
     if (!cloth) return "neither object is a soft body";
     if (!obstacle->getCollisionShape()) return "the obstacle has no collision shape";
-    if (btSoftBody::upcast(obstacle)) return "both objects are soft bodies";
+    if (const btSoftBody* other = btSoftBody::upcast(obstacle)) return reasonBetween(state, *cloth, *other);
     return reasonInShape(state, *cloth, *obstacle, *obstacle->getCollisionShape(), obstacle->getWorldTransform());
 }
 

@@ -26,7 +26,8 @@ std::string statusText(std::uint32_t status)
         {kStepStartsIntersecting, "triangles of a cloth and an obstacle intersected when the step began"},
         {kStepFacesLeftOut, "faces or links that name another body's nodes were left out"},
         {kStepSurfacePassed, "a surface may have been passed where links pulled"},
-        {kStepMotionHeldBack, "nodes of a cloth that came apart were held back"},
+        {kStepMotionHeldBack,
+         "nodes were held back on their way: cloth that came apart, or no room between cloth and obstacles"},
         {kStepOutOfMemory, "memory ran out and cloth beside meshes stood still"},
         {kStepClothsMeet, "cloth meets itself or other cloth"},
     };
