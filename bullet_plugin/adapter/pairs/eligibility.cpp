@@ -34,8 +34,8 @@ const char* reasonFromCloth(const PluginState& state, const btSoftBody& cloth)
 {
     if (!state.ready()) return "Drape could not start; see Plugin::error()";
     if (!state.steps(cloth))
-        return "the world's soft body solver is not a drape::SoftBodySolver of this plugin; a deformable world has its "
-               "own";
+        return "the world's soft body solver is not a drape::SoftBodySolver of this plugin: give one to the world's "
+               "constructor; deformable worlds stay with Bullet";
     return reasonFromSteppedCloth(state, cloth);
 }
 
