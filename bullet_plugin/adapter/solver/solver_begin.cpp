@@ -260,14 +260,19 @@ std::vector<StepObstacle> SoftBodySolver::Work::wakeReached(KinematicMotions& mo
 void SoftBodySolver::Work::wakeHit(btScalar dt)
 {
     std::vector<btSoftBody*> asleep, awake;
-    for (int i = 0; i < m_bodies.size(); ++i)
+    const auto listMembers = [&](bool active, std::vector<btSoftBody*>& members)
     {
-        const SelfColliding* const self = m_state.m_selfCollision.find(*m_bodies[i]);
-        if (self && self->m_meetsOthers) (m_bodies[i]->isActive() ? awake : asleep).push_back(m_bodies[i]);
-    }
+        for (int i = 0; i < m_bodies.size(); ++i)
+        {
+            if (m_bodies[i]->isActive() != active) continue;
+            const SelfColliding* const self = m_state.m_selfCollision.find(*m_bodies[i]);
+            if (self && self->m_meetsOthers) members.push_back(m_bodies[i]);
+        }
+    };
+    listMembers(false, asleep);
+    if (!asleep.empty()) listMembers(true, awake);
     for (const btSoftBody* body : awake)
     {
-        if (asleep.empty()) return;
         const btScalar thickness = SelfCollision::thicknessOf(*body, *m_state.m_selfCollision.find(*body));
         btVector3 least = body->m_bounds[0], greatest = body->m_bounds[1];
         btScalar farthest2 = 0;
