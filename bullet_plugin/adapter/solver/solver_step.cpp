@@ -175,8 +175,11 @@ void SoftBodySolver::Work::guardMeetings(BodySet fixed)
             SubstepBody* const substeps = substepsOf(*body);
             if (substeps && m_meetings.impactShare(*body) > kMostImpactShare) substeps->changeOver();
             const bool isOut = holdInBounds(m_state, *body, contactsOf(*body));
-            if (isOut) fixed.insert(body);
-            if (isOut) m_state.m_statistics.m_status |= kStepMotionHeldBack;
+            if (isOut)
+            {
+                fixed.insert(body);
+                m_state.m_statistics.m_status |= kStepMotionHeldBack;
+            }
             if (isOut || contactsOf(*body)) moved.push_back(body);
         }
         if (moved.empty()) return;

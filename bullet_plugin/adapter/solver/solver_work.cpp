@@ -1,5 +1,6 @@
 #include "bullet_plugin/adapter/solver/solver_work.h"
 
+#include "bullet_plugin/adapter/mirrors/solid_links.h"
 #include "bullet_plugin/adapter/solver/body_jobs.h"
 #include "bullet_plugin/core/float_environment.h"
 
@@ -17,8 +18,7 @@ bool isAnchoredTo(const btSoftBody& body, const btCollisionObject& object, const
     for (int i = 0; i < body.m_anchors.size(); ++i)
     {
         const btSoftBody::Anchor& anchor = body.m_anchors[i];
-        const int node = int(anchor.m_node - &body.m_nodes[0]);
-        if (anchor.m_body == &object && std::find(nodes, nodes + 3, node) != nodes + 3) return true;
+        if (anchor.m_body == &object && std::count(nodes, nodes + 3, nodeIndex(body, anchor.m_node)) > 0) return true;
     }
     return false;
 }

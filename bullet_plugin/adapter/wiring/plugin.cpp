@@ -45,8 +45,8 @@ std::string reasonInShape(const PluginState& state, const btSoftBody& cloth, con
 // Returns why Bullet's own algorithm has a soft body with another one, or with itself; empty if Drape has.
 std::string reasonBetween(PluginState& state, const btSoftBody& body, const btSoftBody& other)
 {
-    const SelfColliding *const first = state.m_selfCollision.find(body), *const second =
-                                                                             state.m_selfCollision.find(other);
+    const SelfColliding* const first = state.m_selfCollision.find(body);
+    const SelfColliding* const second = state.m_selfCollision.find(other);
     if (&body == &other)
         return first && first->m_meetsItself ? std::string()
                                              : "the soft body's self collision is off: Plugin::setSelfCollision";
