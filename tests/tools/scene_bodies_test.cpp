@@ -240,7 +240,7 @@ TEST_F(SceneBodies, RopesAreRecordedAndDrawn)
     EXPECT_FALSE(loadMesh(path("frames/cloth_0004.ply"), Joining::ByIndex, mesh, report, error));
     EXPECT_NE(error.find("triangle"), std::string::npos) << error;
     EXPECT_NE(readAll(path("a.glb")).find(R"("mode":1)"), std::string::npos);
-    EXPECT_EQ(run({"--scene", scene, "--steps", "1", "--quiet", "--animation", path("a.webp")}).m_exitCode, 0);
+    EXPECT_NE(hashOf({"--scene", scene, "--steps", "1", "--animation", path("a.webp")}), "");
     EXPECT_NE(readAll(path("a.webp")), "");
     const auto summary = nlohmann::json::parse(readAll(path("a.json")));
     EXPECT_GT(summary.at("drape").at("stretch_max"), 0);

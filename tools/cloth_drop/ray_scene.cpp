@@ -114,6 +114,7 @@ RayScene::~RayScene()
 
 void RayScene::addMesh(const TriangleMesh& mesh, int index)
 {
+    if (mesh.m_triangles.empty()) return;
     RTCGeometry geometry = rtcNewGeometry(m_device, RTC_GEOMETRY_TYPE_TRIANGLE);
     void* vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float),
                                              mesh.vertexCount());
