@@ -1,5 +1,6 @@
 // Settings, statistics and devices as dictionaries.
 #include <cctype>
+#include <regex>
 
 #include "bullet_plugin/adapter/c_api/field_lists.h"
 #include "drape/queries.h"
@@ -91,6 +92,27 @@ py::dict statusBits()
 #undef DRAPE_BIT
     return found;
 }
+// Returns an error's text with the names of functions and fields that Python has: addCloth becomes add_cloth, and
+// Settings::m_mode becomes Settings.mode.
+std::string pythonText(const std::string& text)
+{
+    static const std::regex name("::|\\bm_\\w+|\\b[a-z]+[A-Z]\\w*");
+    std::string result;
+    auto copied = text.begin();
+    for (std::sregex_iterator found(text.begin(), text.end(), name), end; found != end; ++found)
+    {
+        result.append(copied, (*found)[0].first);
+        copied = (*found)[0].second;
+        const std::string own = found->str();
+        if (own == "::")
+            result += '.';
+        else if (own == "addObstacle" || own == "removeObstacle")
+            result += own == "addObstacle" ? "add_mesh" : "remove_mesh";
+        else
+            result += pythonName(own);
+    }
+    return result.append(copied, text.end());
+}
 }  // namespace
 
 void raise(const Error& error)
@@ -98,7 +120,7 @@ void raise(const Error& error)
     switch (error.m_kind)
     {
         case ErrorKind::Input:
-            throw py::value_error(error.text());
+            throw py::value_error(pythonText(error.text()));
         case ErrorKind::Memory:
             throw std::bad_alloc();
         case ErrorKind::Environment:

@@ -189,6 +189,39 @@ TEST_F(LogTest, NamesClothThatStartsThroughClothOnce)
     EXPECT_NE(plugin.diagnose(world.world()).find("pairs of triangles intersect"), std::string::npos);
 }
 
+// A remark that applies to several is there once, also if the app has one name for them.
+TEST_F(LogTest, LinesHaveTheAppsNames)
+{
+    m_settings.m_nameOf = [](const btCollisionObject& object)
+    { return btSoftBody::upcast(&object) ? "sheet " + std::to_string(object.getUserIndex()) : std::string("ball"); };
+    Plugin plugin(m_settings);
+    DropWorld world(&plugin);
+    drop(world, 0.3f);
+    ASSERT_EQ(m_lines.size(), 2u);
+    for (const std::string& line : m_lines)
+        EXPECT_EQ(line.rfind("sheet -1 and ball: the thickness", 0), 0u) << line;
+    const std::string text = plugin.diagnose(world.world());
+    EXPECT_EQ(text.rfind("sheet -1 and ball (and 1 more): the thickness", 0), 0u) << text;
+    EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 0) << text;
+}
+
+TEST_F(LogTest, LinesHaveAddressesWhereTheAppHasNoName)
+{
+    int calls = 0;
+    m_settings.m_nameOf = [&calls](const btCollisionObject&) -> std::string
+    {
+        if (++calls % 2 == 0) throw std::runtime_error("no name");
+        return "";
+    };
+    Plugin plugin(m_settings);
+    DropWorld world(&plugin);
+    drop(world, 0.3f);
+    EXPECT_EQ(calls, 4);
+    ASSERT_EQ(m_lines.size(), 2u);
+    EXPECT_EQ(m_lines[0].rfind("soft body 0x", 0), 0u) << m_lines[0];
+    EXPECT_NE(m_lines[0].find(" and object 0x"), std::string::npos) << m_lines[0];
+}
+
 TEST_F(LogTest, NamesAnotherWorldAtTheAddressOfAGoodOne)
 {
     Plugin plugin(m_settings);

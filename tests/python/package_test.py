@@ -98,7 +98,7 @@ def test_settings_that_cannot_be_used_raise():
     with pytest.raises(TypeError, match="Settings.log"):
         drape.Queries(drape.Settings(log=3))
     for make in (drape.Queries, drape.ClothWorld):
-        with pytest.raises(ValueError, match="m_activation"):
+        with pytest.raises(ValueError, match="^Settings.activation is 9\nit should be 0 to 4$"):
             make(drape.Settings(backend="host", activation=9))
         with pytest.raises(drape.DeviceError, match="no OpenCL device matches"):
             make(drape.Settings(backend="opencl", device="there is no such device"))

@@ -206,6 +206,20 @@ TEST_F(SceneFiles, OnlyWhatCanBeReadIsWritten)
         EXPECT_EQ(readAll(written), "{}");
 }
 
+TEST_F(SceneFiles, LinesOfTheLogNameBodiesAsTheSceneDoes)
+{
+    const std::string box = R"({"shape": {"type": "box", "size": [2, 0.2, 2]}, "position": [0, 0.1, 0])";
+    const std::string scene = write("scene.json", sceneWith(sheetWith(R"(, "name": "sheet")"),
+                                                            R"(, "obstacles": [)" + box + R"(, "name": "block"}])"));
+    const ToolRun named = run({"--scene", scene, "--backend", "host", "--quiet"});
+    EXPECT_NE(named.m_err.find(R"(cloth "sheet" begins a step with)"), std::string::npos) << named.m_err;
+    EXPECT_NE(named.m_err.find(R"(of obstacle "block" ()"), std::string::npos) << named.m_err;
+    const std::string other = write("other.json", sceneWith(sheetWith(""), R"(, "obstacles": [)" + box + "}]"));
+    const ToolRun numbered = run({"--scene", other, "--backend", "host", "--quiet"});
+    EXPECT_NE(numbered.m_err.find("cloth 0 begins a step with"), std::string::npos) << numbered.m_err;
+    EXPECT_NE(numbered.m_err.find("of obstacle 0 ("), std::string::npos) << numbered.m_err;
+}
+
 // Bullet's own collision runs the same scene in a child, and outputs named in the file are written.
 TEST_F(SceneFiles, RunsAreComparedAndRecorded)
 {

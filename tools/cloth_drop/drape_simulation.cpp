@@ -48,6 +48,11 @@ std::unique_ptr<Simulation> makeDrapeSimulation(const DropScene& scene, const Op
     Settings settings;
     exitCode = kExitBadInput;
     if (!drapeSettings(options, settings, error)) return nullptr;
+    settings.m_nameOf = [layers = scene.m_layers](const btCollisionObject& body)
+    {
+        if (!btSoftBody::upcast(&body)) return std::string("the obstacle");
+        return layers == 1 ? "the cloth" : "cloth " + std::to_string(body.getUserIndex());
+    };
     auto simulation = std::make_unique<DrapeSimulation>(scene, settings);
     if (!isReady(simulation->plugin(), error, exitCode)) return nullptr;
     return simulation;

@@ -133,6 +133,7 @@ void DropWorld::addSheet(const DropScene& scene, const TriangleMesh& sheet, bool
 {
     m_cloths.push_back(makeBody(m_world.getWorldInfo(), sheet, scene.m_mass, 0.5 * scene.m_thickness));
     btSoftBody& cloth = *m_cloths.back();
+    cloth.setUserIndex(int(m_cloths.size()) - 1);
     btSoftBody::Material* edges = cloth.m_materials[0];
     edges->m_kLST = btScalar(dropMaterial().m_stretch);
     btSoftBody::Material* bending = cloth.appendMaterial();

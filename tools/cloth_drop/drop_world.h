@@ -18,6 +18,7 @@
 
 namespace drape
 {
+// Cloths carry their number, from the lowest on, as Bullet's user index.
 class DropWorld
 {
 public:

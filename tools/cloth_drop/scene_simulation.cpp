@@ -155,6 +155,7 @@ std::unique_ptr<Simulation> makeDrapeScene(const ClothScene& scene, const Option
     Settings settings;
     exitCode = kExitBadInput;
     if (!drapeSettings(options, settings, error)) return nullptr;
+    settings.m_nameOf = [&scene](const btCollisionObject& body) { return nameOf(scene, body); };
     auto simulation = std::make_unique<DrapeScene>(scene, settings);
     if (!isReady(simulation->plugin(), error, exitCode)) return nullptr;
     return simulation;

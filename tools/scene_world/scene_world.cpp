@@ -17,6 +17,16 @@ namespace
 constexpr int kNodesPerCluster = 16;  // Bullet's demos have 10 to 30
 }  // namespace
 
+std::string nameOf(const ClothScene& scene, const btCollisionObject& body)
+{
+    const bool isCloth = btSoftBody::upcast(&body) != nullptr;
+    const int index = body.getUserIndex();
+    const std::string& name =
+        isCloth ? scene.m_cloths[std::size_t(index)].m_name : scene.m_obstacles[std::size_t(index)].m_name;
+    const std::string kind = isCloth ? "cloth " : "obstacle ";
+    return kind + (name.empty() ? std::to_string(index) : '"' + name + '"');
+}
+
 SceneWorld::SceneWorld(const ClothScene& scene, std::unique_ptr<btCollisionConfiguration> configuration,
                        std::unique_ptr<btSoftBodySolver> solver)
     : m_scene(scene),
@@ -74,6 +84,7 @@ btSoftBody& SceneWorld::addCloth(const SceneCloth& cloth)
 {
     m_cloths.push_back(makeClothBody(m_world.getWorldInfo(), m_scene, cloth));
     btSoftBody& body = *m_cloths.back();
+    body.setUserIndex(int(m_cloths.size()) - 1);
     for (const SceneAnchors& anchors : cloth.m_anchors)
         for (const int node : anchors.m_nodes)
             body.appendAnchor(node, m_obstacles[anchors.m_obstacle].m_body.get(), !anchors.m_collides,
@@ -85,6 +96,7 @@ btSoftBody& SceneWorld::addCloth(const SceneCloth& cloth)
 void SceneWorld::addObstacle(const SceneObstacle& obstacle)
 {
     m_obstacles.push_back(makeObstacleBody(m_scene, obstacle));
+    m_obstacles.back().m_body->setUserIndex(int(m_obstacles.size()) - 1);
     m_world.addRigidBody(m_obstacles.back().m_body.get());
 }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include <BulletSoftBody/btSoftRigidDynamicsWorld.h>
@@ -24,6 +25,10 @@ enum class BulletCollision
     Clusters
 };
 
+// Returns what lines call a body of a SceneWorld: its kind, and its name in the scene or its number.
+std::string nameOf(const ClothScene& scene, const btCollisionObject& body);
+
+// Bodies carry their index in the scene as Bullet's user index.
 class SceneWorld
 {
 public:

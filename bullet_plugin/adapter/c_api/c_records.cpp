@@ -17,7 +17,7 @@ constexpr std::size_t kSums = 0 DRAPE_STATISTICS_SUMS(DRAPE_ONE);
 
 // A field that only one side has fails here: add it to the list, to the record of drape/c_api.h, and to the Python
 // module's class if it has one.
-static_assert(fieldCount<Settings>() == kSettings + 2, "besides the list, Settings has m_log and m_parallelFor");
+static_assert(fieldCount<Settings>() == kSettings + 3, "besides the list, it has m_log, m_nameOf and m_parallelFor");
 static_assert(fieldCount<DrapeSettings>() == kSettings + 4, "besides the list, two functions with their user pointers");
 static_assert(fieldCount<DeviceInfo>() == kDeviceInfo && fieldCount<DrapeDeviceInfo>() == kDeviceInfo, "");
 static_assert(fieldCount<DeviceReport>() == kDeviceReport + 1, "besides the list, DeviceReport has m_device");

@@ -6,8 +6,19 @@
 
 namespace drape
 {
+namespace
+{
+// Names bodies by the numbers that addCloth() and addObstacle() returned.
+Settings withNames(Settings settings)
+{
+    settings.m_nameOf = [](const btCollisionObject& body)
+    { return (btSoftBody::upcast(&body) ? "cloth " : "obstacle ") + std::to_string(body.getUserIndex()); };
+    return settings;
+}
+}  // namespace
+
 ClothWorld::Implementation::Implementation(const Settings& settings)
-    : m_plugin(settings),
+    : m_plugin(withNames(settings)),
       m_configuration(m_plugin),
       m_solver(m_plugin),
       m_dispatcher(&m_configuration),

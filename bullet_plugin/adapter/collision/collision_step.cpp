@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <iterator>
 
 #include "bullet_plugin/adapter/collision/stretch.h"
@@ -135,13 +134,10 @@ CollisionStep::Pair CollisionStep::makePair(const PairNote& note, const ClothMir
 void CollisionStep::leaveOutField(const PairNote& note)
 {
     m_fieldsLeftOut = true;
-    if (!m_told.insert(note.m_cloth).second) return;
-    char line[256];
-    std::snprintf(line, sizeof(line),
-                  "soft body %p covers more cells of the height field of object %p than a step reads, and does not "
-                  "collide with it in this step",
-                  static_cast<const void*>(note.m_cloth), static_cast<const void*>(note.m_obstacle.m_object));
-    m_state.log(line);
+    if (!m_withoutFields.isNew({keyOf(*note.m_cloth), keyOf(*note.m_obstacle.m_object)})) return;
+    m_state.log(m_state.nameOf(*note.m_cloth) + " covers more cells of the height field of " +
+                m_state.nameOf(*note.m_obstacle.m_object) +
+                " than a step reads, and does not collide with it in this step");
 }
 
 void CollisionStep::addPair(const PairNote& note)

@@ -16,6 +16,7 @@
 #include "bullet_plugin/core/solver/host/impact_cut.h"
 #include "bullet_plugin/adapter/collision/pair_starts.h"
 #include "bullet_plugin/adapter/wiring/plugin_state.h"
+#include "bullet_plugin/adapter/wiring/told_problems.h"
 #include "bullet_plugin/core/pipeline/add_detection.h"
 
 namespace drape
@@ -169,6 +170,7 @@ private:
     PairStarts m_starts;
     std::vector<std::vector<int>> m_jumped;           // result of checkStarts(), by body
     std::unordered_set<const btSoftBody*> m_invalid;  // with nodes that were not finite; compared, not followed
-    std::unordered_set<const btSoftBody*> m_told;     // bodies reported as left out; compared, not followed
+    ToldProblems<BodyKey> m_leftOut;                  // bodies left out of a step
+    ToldProblems<std::pair<BodyKey, BodyKey>> m_withoutFields;  // cloths and height fields of too many cells
 };
 }  // namespace drape

@@ -158,7 +158,7 @@ void CollisionStep::addPushes(BodyContacts& body)
 }
 
 // Handles a body that needs too many tests. A body that has changed its size is held together and detected again. If
-// that is not enough, the body is left out of the step. This is reported once, until a step includes it again.
+// that is not enough, the body is left out of the step. This is reported once while it lasts.
 void CollisionStep::leaveOut(std::size_t index)
 {
     BodyContacts& body = m_bodies[index];
@@ -174,14 +174,13 @@ void CollisionStep::leaveOut(std::size_t index)
     m_mirrors[index]->startAnew();
     body.m_leftOut = body.m_wasTangled = true;
     body.m_contacts.m_limit.clear();
-    if (!m_told.insert(body.m_body).second) return;
-    char line[256];
-    std::snprintf(
-        line, sizeof(line),
-        "soft body %p needs more tests than a step may make, and does not collide in this step; a link is %.3g "
-        "times as long as at rest",
-        static_cast<const void*>(body.m_body), double(std::max(stretch.m_start, stretch.m_end)));
-    m_state.log(line);
+    if (!m_leftOut.isNew(keyOf(*body.m_body))) return;
+    char line[128];
+    std::snprintf(line, sizeof(line),
+                  " needs more tests than a step may make, and does not collide in this step; a link is %.3g times as "
+                  "long as at rest",
+                  double(std::max(stretch.m_start, stretch.m_end)));
+    m_state.log(m_state.nameOf(*body.m_body) + line);
 }
 
 // Marks cloths that collided with nothing in this step, or whose nodes were not all checked: they are checked before
@@ -230,9 +229,10 @@ void CollisionStep::reportLeftSurfaces()
 
 void CollisionStep::end()
 {
+    m_leftOut.endStep();
+    m_withoutFields.endStep();
     for (const BodyContacts& body : m_bodies)
     {
-        if (!body.m_leftOut) m_told.erase(body.m_body);
         for (const NodePush& push : body.m_pushes)
         {
             btSoftBody::Node& node = body.m_body->m_nodes[push.m_node];

@@ -1,7 +1,6 @@
 #include "bullet_plugin/adapter/collision/pair_starts.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <limits>
 #include <utility>
 
@@ -195,27 +194,18 @@ void PairStarts::tellMargins(const StartingPair& pair) const
     const ObstacleKey& obstacle = pair.m_obstacle->key();
     const std::string remark = marginRemark(cloth, *obstacle.m_shape);
     if (remark.empty()) return;
-    char line[384];
-    std::snprintf(line, sizeof(line), "soft body %p and object %p: %s", static_cast<const void*>(&cloth),
-                  static_cast<const void*>(obstacle.m_object), remark.c_str());
-    m_state.log(line);
+    m_state.log(m_state.namesOf(cloth, *obstacle.m_object) + ": " + remark);
 }
 
 void PairStarts::tell(const StartingPair& pair, Guard& guard, bool pushed)
 {
     if (guard.m_told) return;
     guard.m_told = true;
-    char line[320];
-    std::snprintf(
-        line, sizeof(line),
-        "soft body %p begins a step with %zu of its faces and links through the mesh of object %p (%llu pairs "
-        "with its triangles); %s",
-        static_cast<const void*>(pair.m_cloth->body()), m_meeting.size(),
-        static_cast<const void*>(pair.m_obstacle->key().m_object),
-        static_cast<unsigned long long>(guard.m_intersections),
-        pushed ? "the mesh is closed, so that the cloth is pushed out"
-               : "the mesh is open, so that the right side is unknown, and the cloth stays as it is");
-    m_state.log(line);
+    m_state.log(m_state.nameOf(*pair.m_cloth->body()) + " begins a step with " + std::to_string(m_meeting.size()) +
+                " of its faces and links through the mesh of " + m_state.nameOf(*pair.m_obstacle->key().m_object) +
+                " (" + std::to_string(guard.m_intersections) + " pairs with its triangles); " +
+                (pushed ? "the mesh is closed, so that the cloth is pushed out"
+                        : "the mesh is open, so that the right side is unknown, and the cloth stays as it is"));
 }
 
 // A pair that was absent may have got into each other: its boxes were apart, or one was not in the world.

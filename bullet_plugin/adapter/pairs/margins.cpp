@@ -58,10 +58,11 @@ btScalar sizeOf(const btCollisionShape& shape)
 std::string tooThick(double thickness, double edge, const char* whose)
 {
     char line[256];
-    std::snprintf(line, sizeof(line),
-                  "the thickness (%g m, %s) is %.3g times the mean edge of the %s (%g m); steps are slow, since pairs "
-                  "grow with its square",
-                  thickness, kMargins, thickness / edge, whose, edge);
+    std::snprintf(
+        line, sizeof(line),
+        "the thickness (%g m, %s) is %.3g times the mean edge of the %s (%.3g m); steps are slow, since pairs "
+        "grow with its square",
+        thickness, kMargins, thickness / edge, whose, edge);
     return line;
 }
 
@@ -72,7 +73,7 @@ std::string edgeRemark(double thickness, double edge, double meshEdge)
     if (meshEdge > 0 && thickness > kMostMeshEdges * meshEdge) return tooThick(thickness, meshEdge, "mesh");
     if (!(thickness < kLeastEdges * edge)) return std::string();
     char line[256];
-    std::snprintf(line, sizeof(line), "the thickness (%g m) is a %.0fth of the mean edge of the cloth (%g m)",
+    std::snprintf(line, sizeof(line), "the thickness (%g m) is a %.0fth of the mean edge of the cloth (%.3g m)",
                   thickness, edge / thickness, edge);
     return line;
 }
@@ -90,7 +91,7 @@ std::string selfThicknessRemark(const btSoftBody& cloth, btScalar thickness)
     char line[256];
     std::snprintf(
         line, sizeof(line),
-        "the thickness of its collision with cloth (%g m) is %.3g times its mean edge (%g m); steps are slow, "
+        "the thickness of its collision with cloth (%g m) is %.3g times its mean edge (%.3g m); steps are slow, "
         "since pairs grow with its square",
         double(thickness), double(thickness) / edge, edge);
     return line;
@@ -119,8 +120,8 @@ std::string marginRemark(const btSoftBody& cloth, const btCollisionShape& obstac
          {std::make_pair("mesh", double(sizeOf(obstacle))), std::make_pair("soft body", double(sizeOf(cloth)))})
     {
         if (!(thickness >= size)) continue;
-        std::snprintf(line, sizeof(line), "the thickness (%g m, %s) is as large as the %s (%g m)", thickness, kMargins,
-                      name, size);
+        std::snprintf(line, sizeof(line), "the thickness (%g m, %s) is as large as the %s (%.3g m)", thickness,
+                      kMargins, name, size);
         return line;
     }
     return edgeRemark(thickness, meanEdgeOf(cloth), sampledEdge(obstacle));

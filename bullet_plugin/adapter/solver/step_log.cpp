@@ -1,10 +1,8 @@
 #include "bullet_plugin/adapter/solver/step_log.h"
 
 #include <algorithm>
-#include <cstdio>
-#include <iterator>
+#include <string>
 
-#include "BulletCollision/BroadphaseCollision/btBroadphaseProxy.h"
 #include "bullet_plugin/adapter/pairs/margins.h"
 #include "bullet_plugin/adapter/vectors.h"
 #include "bullet_plugin/adapter/wiring/log_text.h"
@@ -14,17 +12,6 @@ namespace drape
 {
 namespace
 {
-// Steps without a problem after which it counts as a new one: two seconds at 60 steps a second.
-constexpr std::uint64_t kKeepSteps = 120;
-
-// Forgets what has not been seen for some time.
-template <class Key>
-void dropOld(std::map<Key, std::uint64_t>& lastSteps, std::uint64_t step)
-{
-    for (auto entry = lastSteps.begin(); entry != lastSteps.end();)
-        entry = entry->second + kKeepSteps < step ? lastSteps.erase(entry) : std::next(entry);
-}
-
 int invalidNodesOf(const btSoftBody& body)
 {
     int count = 0;
@@ -34,17 +21,11 @@ int invalidNodesOf(const btSoftBody& body)
 }
 }  // namespace
 
-StepLog::BodyKey StepLog::keyOf(const btSoftBody& body)
-{
-    return {&body, body.getBroadphaseHandle() ? body.getBroadphaseHandle()->m_uniqueId : 0};
-}
-
 void StepLog::endStep(const Bodies& bodies, bool meetCloth)
 {
-    ++m_step;
     m_state.tellCompiled();
-    dropOld(m_invalid, m_step);
-    dropOld(m_meeting, m_step);
+    m_invalid.endStep();
+    m_meeting.endStep();
     if (m_state.m_statistics.m_status & kStepInvalidNodes) tellInvalid(bodies);
     if (!meetCloth) return;
     tellMeetings();
@@ -53,43 +34,30 @@ void StepLog::endStep(const Bodies& bodies, bool meetCloth)
 
 void StepLog::tellInvalid(const Bodies& bodies)
 {
-    char line[256];
     bool anyNamed = false;
     for (int i = 0; i < bodies.size(); ++i)
     {
         const int count = invalidNodesOf(*bodies[i]);
         if (count == 0) continue;
         anyNamed = true;
-        std::uint64_t& last = m_invalid[keyOf(*bodies[i])];
-        const bool isNew = last == 0;
-        last = m_step;
-        if (!isNew) continue;
-        std::snprintf(line, sizeof(line),
-                      "soft body %p: %d of its %d nodes are not finite or beyond 2^30 m, and are left out of collision",
-                      static_cast<const void*>(bodies[i]), count, bodies[i]->m_nodes.size());
-        m_state.log(line);
+        if (!m_invalid.isNew(keyOf(*bodies[i]))) continue;
+        m_state.log(m_state.nameOf(*bodies[i]) + ": " + std::to_string(count) + " of its " +
+                    std::to_string(bodies[i]->m_nodes.size()) +
+                    " nodes are not finite or beyond 2^30 m, and are left out of collision");
     }
-    if (anyNamed) return;
-    const bool isNew = m_unnamed == 0 || m_unnamed + kKeepSteps < m_step;
-    m_unnamed = m_step;
-    if (!isNew) return;
-    std::snprintf(line, sizeof(line), "%zu nodes were not finite or beyond 2^30 m in a step, and were left out of it",
-                  m_state.m_statistics.m_invalidNodes);
-    m_state.log(line);
+    if (anyNamed || !m_invalid.isNew(BodyKey())) return;
+    m_state.log(std::to_string(m_state.m_statistics.m_invalidNodes) +
+                " nodes were not finite or beyond 2^30 m in a step, and were left out of it");
 }
 
 void StepLog::tellMeetings()
 {
-    std::map<PairKey, ClothPairCounts> met;
+    std::map<std::pair<BodyKey, BodyKey>, ClothPairCounts> met;
     for (const FlaggedPair& pair : m_state.m_flagged)
         if (pair.m_otherBody) met[std::minmax(keyOf(*pair.m_body), keyOf(*pair.m_otherBody))].add(pair.m_flag);
     for (const auto& [bodies, counts] : met)
-    {
-        std::uint64_t& last = m_meeting[bodies];
-        const bool isNew = last == 0;
-        last = m_step;
-        if (isNew) m_state.log(clothPairText(*bodies.first.first, *bodies.second.first, counts));
-    }
+        if (m_meeting.isNew(bodies))
+            m_state.log(m_state.namesOf(*bodies.first.first, *bodies.second.first) + ": " + counts.text());
 }
 
 // Checks each thickness when it is new.
@@ -106,7 +74,7 @@ void StepLog::tellThicknesses(const Bodies& bodies)
         const auto checked = m_thicknesses.find(key);
         if (checked != m_thicknesses.end() && checked->second == thickness) continue;
         const std::string remark = selfThicknessRemark(*bodies[i], thickness);
-        if (!remark.empty()) m_state.log(nameOf(*bodies[i]) + ": " + remark);
+        if (!remark.empty()) m_state.log(m_state.nameOf(*bodies[i]) + ": " + remark);
     }
     m_thicknesses.swap(thicknesses);
 }

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <map>
 #include <memory>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -24,14 +24,6 @@ namespace drape
 {
 namespace
 {
-template <class... Values>
-std::string format(const char* text, Values... values)
-{
-    char line[512];
-    std::snprintf(line, sizeof(line), text, values...);
-    return line;
-}
-
 bool mayCollide(const btCollisionObject& a, const btCollisionObject& b)
 {
     const btBroadphaseProxy *const p = a.getBroadphaseHandle(), *const q = b.getBroadphaseHandle();
@@ -64,7 +56,7 @@ public:
             btSoftBody* const cloth = btSoftBody::upcast(objects[i]);
             if (!cloth)
             {
-                addRemark("", m_plugin.state()->jumpRemark(*objects[i]));
+                add(m_plugin.state()->jumpRemark(*objects[i]));
                 continue;
             }
             m_plugin.state()->m_kept.fetch(*cloth);
@@ -73,15 +65,42 @@ public:
         addClothPairs();
         const std::string status = statusText(m_plugin.statistics().m_status);
         if (!status.empty()) add("the last step: " + status);
-        return m_text;
+        return lines();
     }
 
 private:
-    void add(const std::string& line) { m_text += (m_text.empty() ? "" : "\n") + line; }
-    void addRemark(const std::string& name, const std::string& remark)
+    // A body, or two that are a pair.
+    using Subject = std::pair<const btCollisionObject*, const btCollisionObject*>;
+
+    // A text, and to whom it applies, if to anybody.
+    struct Remark
     {
-        if (!remark.empty()) add(name + remark);
+        std::string m_text, m_firstName;
+        std::set<Subject> m_subjects;
+    };
+
+    void add(const std::string& line)
+    {
+        if (!line.empty()) m_remarks.push_back({line, "", {}});
     }
+    // These add nothing if the remark is empty.
+    void addAbout(const btCollisionObject& body, const std::string& remark)
+    {
+        addAbout({&body, nullptr}, remark, [&] { return m_plugin.state()->nameOf(body); });
+    }
+    void addAbout(const btCollisionObject& a, const btCollisionObject& b, const std::string& remark)
+    {
+        addAbout({&a, &b}, remark, [&] { return m_plugin.state()->namesOf(a, b); });
+    }
+    template <class MakeName>
+    void addAbout(const Subject& subject, const std::string& remark, const MakeName& makeName)
+    {
+        if (remark.empty()) return;
+        const auto [place, isNew] = m_places.emplace(remark, m_remarks.size());
+        if (isNew) m_remarks.push_back({remark, makeName(), {}});
+        m_remarks[place->second].m_subjects.insert(subject);
+    }
+    std::string lines() const;
     void addSetup();
     void addLinks(const btSoftBody& cloth);
     void addClothPairs();
@@ -95,9 +114,24 @@ private:
 
     const Plugin& m_plugin;
     const btCollisionWorld& m_world;
-    std::string m_text;
+    std::vector<Remark> m_remarks;
+    std::map<std::string, std::size_t> m_places;  // indices of those of addAbout(), by text
     std::map<const btCollisionShape*, std::unique_ptr<MeshProbe>> m_probes;
 };
+
+// Returns one line for each remark, which names one of the bodies or pairs and counts the others.
+std::string Diagnosis::lines() const
+{
+    std::string all;
+    for (const Remark& remark : m_remarks)
+    {
+        if (!all.empty()) all += '\n';
+        all += remark.m_firstName;
+        if (remark.m_subjects.size() > 1) all += " (and " + std::to_string(remark.m_subjects.size() - 1) + " more)";
+        all += (remark.m_firstName.empty() ? "" : ": ") + remark.m_text;
+    }
+    return all;
+}
 
 void Diagnosis::addSetup()
 {
@@ -116,7 +150,7 @@ void Diagnosis::addLinks(const btSoftBody& cloth)
     if (!state.ready() || state.settings().m_solver == Solver::Bullet || sizeof(btScalar) != sizeof(float)) return;
     if (!state.ownsSolver(cloth.getSoftBodySolver())) return;
     const char* const reason = reasonForBulletsLinks(state, cloth);
-    if (reason) add(nameOf(cloth) + ": Bullet solves its links, so that it stretches more: " + reason);
+    if (reason) addAbout(cloth, std::string("Bullet solves its links, so that it stretches more: ") + reason);
 }
 
 // Adds what the last step found of cloth with cloth, as far as the bodies are in this world.
@@ -133,21 +167,20 @@ void Diagnosis::addClothPairs()
         return false;
     };
     for (const auto& [bodies, counts] : met)
-        if (isHere(bodies.first) && isHere(bodies.second)) add(clothPairText(*bodies.first, *bodies.second, counts));
+        if (isHere(bodies.first) && isHere(bodies.second)) addAbout(*bodies.first, *bodies.second, counts.text());
 }
 
 void Diagnosis::addCloth(const btSoftBody& cloth)
 {
     addLinks(cloth);
     const SelfColliding* const self = m_plugin.state()->m_selfCollision.find(cloth);
-    if (self) addRemark(nameOf(cloth) + ": ", selfThicknessRemark(cloth, SelfCollision::thicknessOf(cloth, *self)));
-    const void* const name = &cloth;
+    if (self) addAbout(cloth, selfThicknessRemark(cloth, SelfCollision::thicknessOf(cloth, *self)));
     if (!m_plugin.state()->ownsSolver(cloth.getSoftBodySolver()))
-        add(format("soft body %p: the world's soft body solver is not a drape::SoftBodySolver of this plugin", name));
+        addAbout(cloth, "the world's soft body solver is not a drape::SoftBodySolver of this plugin");
     int invalid = 0;
     for (int i = 0; i < cloth.m_nodes.size(); ++i)
         invalid += !std::isfinite(cloth.m_nodes[i].m_x.length2());
-    if (invalid > 0) add(format("soft body %p: %d nodes are not finite", name, invalid));
+    if (invalid > 0) addAbout(cloth, std::to_string(invalid) + " nodes are not finite");
     std::map<std::string, int> reasons;
     const btCollisionObjectArray& objects = m_world.getCollisionObjectArray();
     for (int i = 0; i < objects.size(); ++i)
@@ -159,8 +192,8 @@ void Diagnosis::addCloth(const btSoftBody& cloth)
         addPair(cloth, object, *object.getCollisionShape(), object.getWorldTransform());
     }
     for (const auto& [reason, count] : reasons)
-        add(format("soft body %p: Bullet's own collision has its pairs with %d %s: %s", name, count,
-                   count == 1 ? "object" : "objects", reason.c_str()));
+        addAbout(cloth, "Bullet's own collision has its pairs with " + std::to_string(count) +
+                            (count == 1 ? " object: " : " objects: ") + reason);
 }
 
 // The leaves of the object's shape that Drape handles.
@@ -175,9 +208,7 @@ void Diagnosis::addPair(const btSoftBody& cloth, const btCollisionObject& object
         return;
     }
     if (reasonForStock(*m_plugin.state(), cloth, object, shape)) return;
-    const std::string pair =
-        format("soft body %p and object %p: ", static_cast<const void*>(&cloth), static_cast<const void*>(&object));
-    addRemark(pair, marginRemark(cloth, shape));
+    addAbout(cloth, object, marginRemark(cloth, shape));
     addIntersections(cloth, object, shape, pose);
 }
 
@@ -240,18 +271,16 @@ void Diagnosis::addIntersections(const btSoftBody& cloth, const btCollisionObjec
     const bool closed = probe->isClosed();
     for (int i = 0; closed && i < cloth.m_nodes.size(); ++i)
         inside += probe->isInside(placeOf(cloth.m_nodes[i]));
-    const std::string pair =
-        format("soft body %p and object %p: ", static_cast<const void*>(&cloth), static_cast<const void*>(&object));
     if (pairs > 0)
-        add(pair + format("%zu pairs of the cloth's faces or links and the mesh's triangles intersect, %zu of %d nodes "
-                          "are inside; %s",
-                          pairs, inside, cloth.m_nodes.size(),
-                          closed ? "the mesh is closed, so that nodes that are not pinned are pushed out"
-                                 : "the mesh is open, so that the right side is unknown"));
+        addAbout(cloth, object,
+                 std::to_string(pairs) + " pairs of the cloth's faces or links and the mesh's triangles intersect, " +
+                     std::to_string(inside) + " of " + std::to_string(cloth.m_nodes.size()) + " nodes are inside; " +
+                     (closed ? "the mesh is closed, so that nodes that are not pinned are pushed out"
+                             : "the mesh is open, so that the right side is unknown"));
     else if (inside == std::size_t(cloth.m_nodes.size()) && inside > 0)
-        add(pair +
-            "the cloth is wholly inside the closed mesh, and stays there unless Plugin::setOneSided declares "
-            "only its front solid");
+        addAbout(cloth, object,
+                 "the cloth is wholly inside the closed mesh, and stays there unless Plugin::setOneSided declares only "
+                 "its front solid");
 }
 }  // namespace
 

@@ -81,6 +81,10 @@ public:
     ThreadTeam& threads() { return *m_threads; }
     // Hands a line to Settings::m_log.
     void log(const std::string& line) const;
+    // Returns what lines call an object: Settings::m_nameOf's text, or its kind and address.
+    std::string nameOf(const btCollisionObject& object) const;
+    // Returns "A and B", or "A and itself" for one object.
+    std::string namesOf(const btCollisionObject& a, const btCollisionObject& b) const;
     // Begins a call that uses the pipeline, and reports a second thread in one at the same time. Keep the result until
     // the call ends.
     ThreadWatch::Call beginCall();

@@ -5,7 +5,6 @@
 #include "BulletCollision/CollisionDispatch/btCollisionDispatcher.h"
 #include "LinearMath/btQuickprof.h"
 #include "bullet_plugin/adapter/pairs/margins.h"
-#include "bullet_plugin/adapter/wiring/log_text.h"
 #include "bullet_plugin/adapter/wiring/plugin_state.h"
 #include "bullet_plugin/adapter/wiring/wiring.h"
 #include "bullet_plugin/core/device/missing_device.h"
@@ -52,6 +51,22 @@ void PluginState::log(const std::string& line) const
 {
     // A failure of the log itself has nowhere to go.
     if (m_settings.m_log) runApps([&] { m_settings.m_log(line.c_str()); });
+}
+
+std::string PluginState::nameOf(const btCollisionObject& object) const
+{
+    std::string name;
+    if (m_settings.m_nameOf) runApps([&] { name = m_settings.m_nameOf(object); });
+    if (!name.empty()) return name;
+    char text[48];
+    std::snprintf(text, sizeof text, "%s %p", btSoftBody::upcast(&object) ? "soft body" : "object",
+                  static_cast<const void*>(&object));
+    return text;
+}
+
+std::string PluginState::namesOf(const btCollisionObject& a, const btCollisionObject& b) const
+{
+    return nameOf(a) + " and " + (&a == &b ? "itself" : nameOf(b));
 }
 
 void PluginState::tellContacts(const btSoftBodySolver* solver, double timeStep)
@@ -111,13 +126,9 @@ std::string PluginState::jumpRemark(const btCollisionObject& object) const
     const auto jumps = [&](const auto& mirror)
     { return mirror.first.m_object == &object && mirror.second.jumpsOften(); };
     if (std::none_of(m_obstacles.begin(), m_obstacles.end(), jumps)) return std::string();
-    char line[320];
-    std::snprintf(line, sizeof(line),
-                  "object %p changes its pose beside cloth in step after step, and each change is a teleport, through "
-                  "which cloth may be lost: move it as a kinematic btRigidBody, by its motion state or its world "
-                  "transform alone",
-                  static_cast<const void*>(&object));
-    return line;
+    return nameOf(object) +
+           " changes its pose beside cloth in step after step, and each change is a teleport, through which cloth may "
+           "be lost: move it as a kinematic btRigidBody, by its motion state or its world transform alone";
 }
 
 void PluginState::tellJumps(const btCollisionObject& object)

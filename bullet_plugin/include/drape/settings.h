@@ -11,6 +11,8 @@
 
 #include "drape/export.h"
 
+class btCollisionObject;
+
 namespace drape
 {
 // Writes "drape: ", `line` and a line feed to standard error.
@@ -155,5 +157,10 @@ struct Settings
     // problem lasts, on a thread that calls the plugin. nullptr means no lines. Exceptions from it are dropped. By
     // default lines go to standard error.
     std::function<void(const char*)> m_log = logToStandardError;
+
+    // Returns an app's name for an object, for lines of m_log and of Plugin::diagnose(). Without it (the default), and
+    // where its text is empty or it throws, lines have the object's address. Called for such lines alone, on a thread
+    // that calls the plugin, which it must not call. A ClothWorld ignores it, and names its bodies by their numbers.
+    std::function<std::string(const btCollisionObject&)> m_nameOf;
 };
 }  // namespace drape
