@@ -23,7 +23,7 @@ struct Held
 class Simulation
 {
 public:
-    explicit Simulation(const Settings& settings) : m_plugin(settings) {}
+    explicit Simulation(const Settings& settings) : m_plugin(withNames(settings)) {}
 
     // Begins the scene anew. Bullet's world of another scene is left alive until the program ends: to free its distance
     // field takes up to minutes.
@@ -45,6 +45,11 @@ public:
     Held m_held;
 
 private:
+    Settings withNames(Settings settings) const
+    {
+        settings.m_nameOf = [this](const btCollisionObject& body) { return nameOf(m_scene, body); };
+        return settings;
+    }
     void pullHeld();
 
     ClothScene m_scene;

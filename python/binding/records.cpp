@@ -1,5 +1,6 @@
 // Settings, statistics and devices as dictionaries.
 #include <cctype>
+#include <cstring>
 #include <regex>
 
 #include "bullet_plugin/adapter/c_api/field_lists.h"
@@ -92,26 +93,24 @@ py::dict statusBits()
 #undef DRAPE_BIT
     return found;
 }
-// Returns an error's text with the names of functions and fields that Python has: addCloth becomes add_cloth, and
-// Settings::m_mode becomes Settings.mode.
-std::string pythonText(const std::string& text)
+// Returns what is wrong with an argument, with Python's names: Settings::m_mode becomes Settings.mode. The call, which
+// a traceback names, is left out.
+std::string causeOf(const Error& error)
 {
+    std::string text = error.text();
+    const std::string call = text.substr(0, text.find(": "));
+    if (call.size() < text.size() && call.find(' ') == std::string::npos) text.erase(0, call.size() + 2);
+    const bool hasVertices = call == "addObstacle" || call == "setVertices";
+    if (hasVertices && text.rfind("positions", 0) == 0) text.replace(0, std::strlen("positions"), "vertices");
     static const std::regex name("::|\\bm_\\w+|\\b[a-z]+[A-Z]\\w*");
-    std::string result;
-    auto copied = text.begin();
+    std::string cause;
+    auto copied = text.cbegin();
     for (std::sregex_iterator found(text.begin(), text.end(), name), end; found != end; ++found)
     {
-        result.append(copied, (*found)[0].first);
+        cause.append(copied, (*found)[0].first).append(found->str() == "::" ? "." : pythonName(found->str()));
         copied = (*found)[0].second;
-        const std::string own = found->str();
-        if (own == "::")
-            result += '.';
-        else if (own == "addObstacle" || own == "removeObstacle")
-            result += own == "addObstacle" ? "add_mesh" : "remove_mesh";
-        else
-            result += pythonName(own);
     }
-    return result.append(copied, text.end());
+    return cause.append(copied, text.cend());
 }
 }  // namespace
 
@@ -120,7 +119,7 @@ void raise(const Error& error)
     switch (error.m_kind)
     {
         case ErrorKind::Input:
-            throw py::value_error(pythonText(error.text()));
+            throw py::value_error(causeOf(error));
         case ErrorKind::Memory:
             throw std::bad_alloc();
         case ErrorKind::Environment:

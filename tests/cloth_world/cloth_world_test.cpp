@@ -105,6 +105,30 @@ protected:
     TriangleMesh m_plate = makeTerrain(3, 0, 4, 1);
 };
 
+TEST_F(ClothWorldTest, LinesHaveIndicesOfItsBodiesAndTheAppsNamesOfOthers)
+{
+    Settings settings = onHost();
+    std::vector<std::string> lines;
+    settings.m_log = [&](const char* line) { lines.push_back(line); };
+    settings.m_nameOf = [](const btCollisionObject&) { return "the app's box"; };
+    Error error;
+    m_world = ClothWorld::create(settings, error);
+    ASSERT_TRUE(m_world) << error.text();
+    ClothDescription cloth = describeCloth(m_sheet);
+    cloth.m_thickness = 0.6;
+    add(cloth);
+    add(describeObstacle(m_plate));
+    btBoxShape shape(btVector3(1, 1, 1));
+    btRigidBody box(0, nullptr, &shape);
+    m_world->world().addRigidBody(&box);
+    steps(1);
+    std::sort(lines.begin(), lines.end());
+    ASSERT_EQ(lines.size(), 2u) << testing::PrintToString(lines);
+    EXPECT_EQ(lines[0].rfind("cloth 0 and obstacle 0: the thickness", 0), 0u) << lines[0];
+    EXPECT_EQ(lines[1].rfind("cloth 0 and the app's box: the thickness", 0), 0u) << lines[1];
+    m_world->world().removeRigidBody(&box);
+}
+
 class ClothWorldOnBackends : public BackendTest
 {
 };

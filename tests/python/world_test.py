@@ -112,7 +112,7 @@ def test_pins_hold_follow_and_let_go(world, sheet):
         world.step(DT)
     assert numpy.allclose(positions[[0, 8], 1], 0.3 + 59 / 60)
     assert positions[:, 1].mean() > 0.4
-    with pytest.raises(ValueError, match="^set_velocities: node 0 is pinned$"):
+    with pytest.raises(ValueError, match="^node 0 is pinned$"):
         world.set_velocities(cloth, [0], [[0, 1, 0]])
     world.set_pinned(cloth, [0, 8], False)
     world.set_velocities(cloth, [0], [[0, 1, 0]])
@@ -284,21 +284,23 @@ print(int(world.step()))
     (ValueError, r"rest_positions: shape \(81, 3\) expected, not \(80, 3\)", lambda w, s: w.add_cloth(
         *s[:2], rest_positions=s.positions[1:])),
     (ValueError, r"mass: shape \(81,\) expected, not \(3,\)", lambda w, s: w.add_cloth(*s[:2], mass=[1, 2, 3])),
-    (ValueError, "add_cloth: mass should be above 0", lambda w, s: w.add_cloth(*s[:2], mass=0)),
-    (ValueError, "add_cloth: friction should be 0 to 1", lambda w, s: w.add_cloth(*s[:2], friction=2)),
-    (ValueError, "add_cloth: pins: there is no node 81 among 81", lambda w, s: w.add_cloth(*s[:2], pins=[81])),
-    (ValueError, "add_cloth: a cloth has one vertex", lambda w, s: w.add_cloth(())),
+    (ValueError, "^mass should be above 0", lambda w, s: w.add_cloth(*s[:2], mass=0)),
+    (ValueError, "^each mass should be above 0", lambda w, s: w.add_cloth(*s[:2], mass=[0] * 81)),
+    (ValueError, "^friction should be 0 to 1", lambda w, s: w.add_cloth(*s[:2], friction=2)),
+    (ValueError, "^pins: there is no node 81 among 81", lambda w, s: w.add_cloth(*s[:2], pins=[81])),
+    (ValueError, "^a cloth has one vertex", lambda w, s: w.add_cloth(())),
     (TypeError, "thickness has the wrong type", lambda w, s: w.add_cloth(*s[:2], thickness="thick")),
     (ValueError, "triangle 0 has the index 71 among 5 vertices", lambda w, s: w.add_mesh(
         s.positions[:5], s.triangles[::-1])),
-    (ValueError, "add_mesh: an obstacle has one triangle", lambda w, s: w.add_mesh(s.positions, ())),
+    (ValueError, "^an obstacle has one triangle", lambda w, s: w.add_mesh(s.positions, ())),
+    (ValueError, "^vertices: value 0 is not finite", lambda w, s: w.add_mesh(s.positions * numpy.nan, s.triangles)),
     (ValueError, "rotation: 4 numbers expected, not 3", lambda w, s: w.add_mesh(*s[:2], rotation=(0, 0, 1))),
-    (ValueError, "set_pose: there is no obstacle 3", lambda w, s: w.set_pose(3, (0, 0, 0))),
-    (ValueError, "set_pose: there is no obstacle -1", lambda w, s: w.set_pose(-1, (0, 0, 0))),
-    (ValueError, "^nodes: there is no cloth 0", lambda w, s: w.positions(0)),
-    (ValueError, "step: dt should be above 0", lambda w, s: w.step(0)),
+    (ValueError, "^there is no obstacle 3", lambda w, s: w.set_pose(3, (0, 0, 0))),
+    (ValueError, "^there is no obstacle -1", lambda w, s: w.set_pose(-1, (0, 0, 0))),
+    (ValueError, "^there is no cloth 0", lambda w, s: w.positions(0)),
+    (ValueError, "^dt should be above 0", lambda w, s: w.step(0)),
     (ValueError, "gravity: 3 numbers expected", lambda w, s: w.set_gravity((0, -9.81))),
-    (ValueError, "set_gravity: gravity: value 1 is not finite", lambda w, s: w.set_gravity((0, float("nan"), 0))),
+    (ValueError, "^gravity: value 1 is not finite", lambda w, s: w.set_gravity((0, float("nan"), 0))),
 ])
 def test_bad_arguments_raise_and_change_nothing(world, sheet, error, text, call):
     with pytest.raises(error, match=text):

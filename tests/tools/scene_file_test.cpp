@@ -218,6 +218,11 @@ TEST_F(SceneFiles, LinesOfTheLogNameBodiesAsTheSceneDoes)
     const ToolRun numbered = run({"--scene", other, "--backend", "host", "--quiet"});
     EXPECT_NE(numbered.m_err.find("cloth 0 begins a step with"), std::string::npos) << numbered.m_err;
     EXPECT_NE(numbered.m_err.find("of obstacle 0 ("), std::string::npos) << numbered.m_err;
+    const std::string alike = box + R"(, "name": "block"})";
+    const std::string twice =
+        write("twice.json", sceneWith(sheetWith(""), R"(, "obstacles": [)" + alike + ", " + alike + "]"));
+    const ToolRun both = run({"--scene", twice, "--backend", "host", "--quiet"});
+    EXPECT_NE(both.m_err.find(R"(of obstacle "block" 1 ()"), std::string::npos) << both.m_err;
 }
 
 // Bullet's own collision runs the same scene in a child, and outputs named in the file are written.

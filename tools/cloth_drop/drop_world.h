@@ -18,7 +18,7 @@
 
 namespace drape
 {
-// Cloths carry their number, from the lowest on, as Bullet's user index.
+// A cloth's user index is its place in the stack, from 0 at the bottom.
 class DropWorld
 {
 public:

@@ -19,12 +19,17 @@ constexpr int kNodesPerCluster = 16;  // Bullet's demos have 10 to 30
 
 std::string nameOf(const ClothScene& scene, const btCollisionObject& body)
 {
-    const bool isCloth = btSoftBody::upcast(&body) != nullptr;
-    const int index = body.getUserIndex();
-    const std::string& name =
-        isCloth ? scene.m_cloths[std::size_t(index)].m_name : scene.m_obstacles[std::size_t(index)].m_name;
-    const std::string kind = isCloth ? "cloth " : "obstacle ";
-    return kind + (name.empty() ? std::to_string(index) : '"' + name + '"');
+    const auto nameIn = [&](const auto& parts, const char* kind)
+    {
+        const std::string& name = parts[std::size_t(body.getUserIndex())].m_name;
+        const auto hasName = [&](const auto& part) { return part.m_name == name; };
+        std::string text = kind;
+        if (!name.empty()) text += " \"" + name + '"';
+        if (std::count_if(parts.begin(), parts.end(), hasName) > 1 || name.empty())
+            text += ' ' + std::to_string(body.getUserIndex());
+        return text;
+    };
+    return btSoftBody::upcast(&body) ? nameIn(scene.m_cloths, "cloth") : nameIn(scene.m_obstacles, "obstacle");
 }
 
 SceneWorld::SceneWorld(const ClothScene& scene, std::unique_ptr<btCollisionConfiguration> configuration,

@@ -25,7 +25,7 @@ enum class BulletCollision
     Clusters
 };
 
-// Returns what lines call a body of a SceneWorld: its kind, and its name in the scene or its number.
+// Returns the name of a SceneWorld's body in lines: its kind and its name, and its number if no other tells it apart.
 std::string nameOf(const ClothScene& scene, const btCollisionObject& body);
 
 // Bodies carry their index in the scene as Bullet's user index.

@@ -65,7 +65,7 @@ void requireCloth(const ClothDescription& cloth)
     if (cloth.m_restPositions) requireValues(cloth.m_restPositions, 3 * cloth.m_vertexCount, "restPositions");
     requireNodes(cloth.m_pins, cloth.m_pinCount, cloth.m_vertexCount, "pins");
     for (std::size_t i = 0; cloth.m_masses && i < cloth.m_vertexCount; ++i)
-        require(cloth.m_masses[i] > 0 && cloth.m_masses[i] <= kLargest, "masses should be above 0");
+        require(cloth.m_masses[i] > 0 && cloth.m_masses[i] <= kLargest, "each mass should be above 0");
     require(cloth.m_masses || (cloth.m_mass > 0 && cloth.m_mass <= kLargest), "mass should be above 0");
     require(cloth.m_thickness > 0 && cloth.m_thickness <= kLargest, "thickness should be above 0");
     require(cloth.m_stiffness > 0 && cloth.m_stiffness <= 1, "stiffness should be above 0 up to 1");

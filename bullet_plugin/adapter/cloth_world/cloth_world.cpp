@@ -6,17 +6,6 @@
 
 namespace drape
 {
-namespace
-{
-// Names bodies by the numbers that addCloth() and addObstacle() returned.
-Settings withNames(Settings settings)
-{
-    settings.m_nameOf = [](const btCollisionObject& body)
-    { return (btSoftBody::upcast(&body) ? "cloth " : "obstacle ") + std::to_string(body.getUserIndex()); };
-    return settings;
-}
-}  // namespace
-
 ClothWorld::Implementation::Implementation(const Settings& settings)
     : m_plugin(withNames(settings)),
       m_configuration(m_plugin),
@@ -24,6 +13,19 @@ ClothWorld::Implementation::Implementation(const Settings& settings)
       m_dispatcher(&m_configuration),
       m_world(&m_dispatcher, &m_broadphase, &m_rigidSolver, &m_configuration, &m_solver)
 {
+}
+
+Settings ClothWorld::Implementation::withNames(Settings settings) const
+{
+    settings.m_nameOf = [this, appsNameOf = settings.m_nameOf](const btCollisionObject& body)
+    {
+        const auto index = std::size_t(body.getUserIndex());
+        if (index < m_cloths.size() && m_cloths[index].m_body.get() == &body) return "cloth " + std::to_string(index);
+        if (index < m_obstacles.size() && m_obstacles[index] && &m_obstacles[index]->body() == &body)
+            return "obstacle " + std::to_string(index);
+        return appsNameOf ? appsNameOf(body) : std::string();
+    };
+    return settings;
 }
 
 ClothWorld::Implementation::~Implementation()

@@ -55,6 +55,8 @@ struct ClothWorld::Implementation
 
     // Its functions throw if memory runs out; those of the plugin would give an empty answer.
     PluginState& state() { return *m_plugin.state(); }
+    // Returns the settings with names for this world's bodies: their indices.
+    Settings withNames(Settings settings) const;
     WorldCloth& cloth(int index);
     ObstacleBody& obstacle(int index);
     int addCloth(const ClothDescription& description);

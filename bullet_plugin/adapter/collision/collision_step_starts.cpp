@@ -158,7 +158,7 @@ void CollisionStep::addPushes(BodyContacts& body)
 }
 
 // Handles a body that needs too many tests. A body that has changed its size is held together and detected again. If
-// that is not enough, the body is left out of the step. This is reported once while it lasts.
+// that is not enough, the body is left out of the step. The log has one line while that lasts.
 void CollisionStep::leaveOut(std::size_t index)
 {
     BodyContacts& body = m_bodies[index];
@@ -175,12 +175,12 @@ void CollisionStep::leaveOut(std::size_t index)
     body.m_leftOut = body.m_wasTangled = true;
     body.m_contacts.m_limit.clear();
     if (!m_leftOut.isNew(keyOf(*body.m_body))) return;
-    char line[128];
-    std::snprintf(line, sizeof(line),
-                  " needs more tests than a step may make, and does not collide in this step; a link is %.3g times as "
-                  "long as at rest",
-                  double(std::max(stretch.m_start, stretch.m_end)));
-    m_state.log(m_state.nameOf(*body.m_body) + line);
+    char link[64] = "";
+    if (isStretched)
+        std::snprintf(link, sizeof(link), "; a link is %.3g times as long as at rest",
+                      double(std::max(stretch.m_start, stretch.m_end)));
+    m_state.log(m_state.nameOf(*body.m_body) +
+                " needs more tests than a step may make, and does not collide in this step" + link);
 }
 
 // Marks cloths that collided with nothing in this step, or whose nodes were not all checked: they are checked before

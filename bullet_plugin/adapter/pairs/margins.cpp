@@ -69,6 +69,7 @@ std::string tooThick(double thickness, double edge, const char* whose)
 // meshEdge: 0 for obstacles that are no meshes.
 std::string edgeRemark(double thickness, double edge, double meshEdge)
 {
+    if (!std::isfinite(edge)) return std::string();
     if (thickness > kMostEdges * edge) return tooThick(thickness, edge, "cloth");
     if (meshEdge > 0 && thickness > kMostMeshEdges * meshEdge) return tooThick(thickness, meshEdge, "mesh");
     if (!(thickness < kLeastEdges * edge)) return std::string();

@@ -41,9 +41,9 @@ void StepLog::tellInvalid(const Bodies& bodies)
         if (count == 0) continue;
         anyNamed = true;
         if (!m_invalid.isNew(keyOf(*bodies[i]))) continue;
-        m_state.log(m_state.nameOf(*bodies[i]) + ": " + std::to_string(count) + " of its " +
-                    std::to_string(bodies[i]->m_nodes.size()) +
-                    " nodes are not finite or beyond 2^30 m, and are left out of collision");
+        m_state.log(m_state.nameOf(*bodies[i]) +
+                    ": nodes that are not finite or beyond 2^30 m are left out of collision, " + std::to_string(count) +
+                    " of " + std::to_string(bodies[i]->m_nodes.size()));
     }
     if (anyNamed || !m_invalid.isNew(BodyKey())) return;
     m_state.log(std::to_string(m_state.m_statistics.m_invalidNodes) +

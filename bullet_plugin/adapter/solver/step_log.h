@@ -30,7 +30,7 @@ private:
     void tellThicknesses(const Bodies& bodies);
 
     PluginState& m_state;
-    ToldProblems<BodyKey> m_invalid;                      // nodes that are not valid; of a null body if it is unknown
+    ToldProblems<BodyKey> m_invalid;  // bodies with invalid nodes; a null key if the body is unknown
     ToldProblems<std::pair<BodyKey, BodyKey>> m_meeting;  // cloth that meets cloth
     std::map<BodyKey, btScalar> m_thicknesses;            // m, checked
 };

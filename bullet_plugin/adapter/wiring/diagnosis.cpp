@@ -56,7 +56,7 @@ public:
             btSoftBody* const cloth = btSoftBody::upcast(objects[i]);
             if (!cloth)
             {
-                add(m_plugin.state()->jumpRemark(*objects[i]));
+                addAbout(*objects[i], m_plugin.state()->jumpRemark(*objects[i]));
                 continue;
             }
             m_plugin.state()->m_kept.fetch(*cloth);
@@ -72,11 +72,22 @@ private:
     // A body, or two that are a pair.
     using Subject = std::pair<const btCollisionObject*, const btCollisionObject*>;
 
-    // A text, and to whom it applies, if to anybody.
+    // A text, and the bodies or pairs to which it applies; none for the world as a whole.
     struct Remark
     {
         std::string m_text, m_firstName;
         std::set<Subject> m_subjects;
+
+        // Returns the line, which names one body or pair and counts the others.
+        std::string line() const
+        {
+            if (m_subjects.empty()) return m_text;
+            const std::size_t others = m_subjects.size() - 1;
+            const bool isPair = m_subjects.begin()->second != nullptr;
+            const char* const what = isPair ? (others == 1 ? " more pair)" : " more pairs)")
+                                            : (others == 1 ? " more body)" : " more bodies)");
+            return m_firstName + (others == 0 ? "" : " (and " + std::to_string(others) + what) + ": " + m_text;
+        }
     };
 
     void add(const std::string& line)
@@ -115,21 +126,15 @@ private:
     const Plugin& m_plugin;
     const btCollisionWorld& m_world;
     std::vector<Remark> m_remarks;
-    std::map<std::string, std::size_t> m_places;  // indices of those of addAbout(), by text
+    std::map<std::string, std::size_t> m_places;  // indices of the remarks about bodies, by text
     std::map<const btCollisionShape*, std::unique_ptr<MeshProbe>> m_probes;
 };
 
-// Returns one line for each remark, which names one of the bodies or pairs and counts the others.
 std::string Diagnosis::lines() const
 {
     std::string all;
     for (const Remark& remark : m_remarks)
-    {
-        if (!all.empty()) all += '\n';
-        all += remark.m_firstName;
-        if (remark.m_subjects.size() > 1) all += " (and " + std::to_string(remark.m_subjects.size() - 1) + " more)";
-        all += (remark.m_firstName.empty() ? "" : ": ") + remark.m_text;
-    }
+        all += (all.empty() ? "" : "\n") + remark.line();
     return all;
 }
 
@@ -180,7 +185,8 @@ void Diagnosis::addCloth(const btSoftBody& cloth)
     int invalid = 0;
     for (int i = 0; i < cloth.m_nodes.size(); ++i)
         invalid += !std::isfinite(cloth.m_nodes[i].m_x.length2());
-    if (invalid > 0) addAbout(cloth, std::to_string(invalid) + " nodes are not finite");
+    if (invalid > 0)
+        addAbout(cloth, std::to_string(invalid) + (invalid == 1 ? " node is not finite" : " nodes are not finite"));
     std::map<std::string, int> reasons;
     const btCollisionObjectArray& objects = m_world.getCollisionObjectArray();
     for (int i = 0; i < objects.size(); ++i)
@@ -192,7 +198,7 @@ void Diagnosis::addCloth(const btSoftBody& cloth)
         addPair(cloth, object, *object.getCollisionShape(), object.getWorldTransform());
     }
     for (const auto& [reason, count] : reasons)
-        addAbout(cloth, "Bullet's own collision has its pairs with " + std::to_string(count) +
+        addAbout(cloth, "Bullet's own collision handles pairs with " + std::to_string(count) +
                             (count == 1 ? " object: " : " objects: ") + reason);
 }
 
@@ -279,8 +285,7 @@ void Diagnosis::addIntersections(const btSoftBody& cloth, const btCollisionObjec
                              : "the mesh is open, so that the right side is unknown"));
     else if (inside == std::size_t(cloth.m_nodes.size()) && inside > 0)
         addAbout(cloth, object,
-                 "the cloth is wholly inside the closed mesh, and stays there unless Plugin::setOneSided declares only "
-                 "its front solid");
+                 "the cloth is wholly inside the closed mesh, and stays there unless the mesh is declared one-sided");
 }
 }  // namespace
 

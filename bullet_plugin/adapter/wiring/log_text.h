@@ -14,7 +14,7 @@ struct ClothPairCounts
     std::size_t m_intersecting = 0, m_touching = 0, m_forced = 0;
 
     void add(PairFlag flag);
-    // Returns what a line about the two says after their names.
+    // Returns the part of a line that follows the two names.
     std::string text() const;
 };
 }  // namespace drape

@@ -81,7 +81,7 @@ public:
     ThreadTeam& threads() { return *m_threads; }
     // Hands a line to Settings::m_log.
     void log(const std::string& line) const;
-    // Returns what lines call an object: Settings::m_nameOf's text, or its kind and address.
+    // Returns the name of an object in lines: Settings::m_nameOf's, or its kind and address.
     std::string nameOf(const btCollisionObject& object) const;
     // Returns "A and B", or "A and itself" for one object.
     std::string namesOf(const btCollisionObject& a, const btCollisionObject& b) const;
@@ -177,7 +177,7 @@ public:
 
     // Calls the listener, if there is one, with the records of a step of the solver. timeStep: s.
     void tellContacts(const btSoftBodySolver* solver, double timeStep);
-    // Returns a line about an object that is put elsewhere beside cloth in step after step; empty if it is not.
+    // Returns a remark about an object that is put elsewhere beside cloth in step after step; empty if it is not.
     std::string jumpRemark(const btCollisionObject& object) const;
     // Logs that a thickness of cloth with cloth is negative, or no number.
     void tellThickness(const btSoftBody& body, double thickness) const;

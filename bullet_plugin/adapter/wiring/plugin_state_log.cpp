@@ -1,5 +1,6 @@
 // Writes the plugin's lines in the log, and remembers enough that each appears once while its problem lasts.
 #include <algorithm>
+#include <cctype>
 #include <cstdio>
 
 #include "BulletCollision/CollisionDispatch/btCollisionDispatcher.h"
@@ -57,6 +58,8 @@ std::string PluginState::nameOf(const btCollisionObject& object) const
 {
     std::string name;
     if (m_settings.m_nameOf) runApps([&] { name = m_settings.m_nameOf(object); });
+    std::replace_if(
+        name.begin(), name.end(), [](unsigned char c) { return std::iscntrl(c) != 0; }, ' ');
     if (!name.empty()) return name;
     char text[48];
     std::snprintf(text, sizeof text, "%s %p", btSoftBody::upcast(&object) ? "soft body" : "object",
@@ -126,8 +129,7 @@ std::string PluginState::jumpRemark(const btCollisionObject& object) const
     const auto jumps = [&](const auto& mirror)
     { return mirror.first.m_object == &object && mirror.second.jumpsOften(); };
     if (std::none_of(m_obstacles.begin(), m_obstacles.end(), jumps)) return std::string();
-    return nameOf(object) +
-           " changes its pose beside cloth in step after step, and each change is a teleport, through which cloth may "
+    return "its pose changes beside cloth in step after step, and each change is a teleport, through which cloth may "
            "be lost: move it as a kinematic btRigidBody, by its motion state or its world transform alone";
 }
 
@@ -135,7 +137,8 @@ void PluginState::tellJumps(const btCollisionObject& object)
 {
     const auto jumps = [&](const auto& mirror)
     { return mirror.first.m_object == &object && mirror.second.jumpsOften(); };
-    if (std::count_if(m_obstacles.begin(), m_obstacles.end(), jumps) == 1) log(jumpRemark(object));
+    if (std::count_if(m_obstacles.begin(), m_obstacles.end(), jumps) == 1)
+        log(nameOf(object) + ": " + jumpRemark(object));
 }
 
 void PluginState::tellThickness(const btSoftBody& body, double thickness) const

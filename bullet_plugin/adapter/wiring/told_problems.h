@@ -1,7 +1,8 @@
-// Remembers which problems the log has, so that each is told once while it lasts.
+// Remembers the problems in the log, so that each is reported once while it lasts.
 //
-// Bodies are told apart by address and by their proxies' number, since another body may get an address. Cost: nothing
-// in a step without problems.
+// A body's key is its address and its proxy's number, since a new body may get the address of a deleted one. A body
+// that is added to the world again counts as another one, unless the broad phase uses numbers again, as btAxisSweep3
+// does. Cost: nothing in a step without problems.
 #pragma once
 
 #include <cstdint>
@@ -25,7 +26,7 @@ template <class Key>
 class ToldProblems
 {
 public:
-    // Notes that the current step has the problem. Returns whether none of the last steps had it.
+    // Notes that the current step has the problem. Returns whether the log does not have it yet.
     bool isNew(const Key& key)
     {
         const auto [last, added] = m_lastSteps.insert({key, m_step});

@@ -141,11 +141,12 @@ public:
     // own algorithm finds in a step leave that step to Bullet. "out of memory" if memory runs out.
     std::string whyBulletSolves(const btSoftBody& body) const;
 
-    // Lists problems of a world, one line each; empty if there are none. Checks the world's solver and dispatcher,
-    // pairs and links left to Bullet other than by Settings::m_solver, cloth that intersects a mesh or lies inside one,
-    // nodes that are not finite, and margins out of proportion. Adds what the last steps found: cloth that meets cloth,
-    // with counts, obstacles that teleport in step after step, and the status. Fetches the nodes of kept bodies. For
-    // development: takes milliseconds to seconds. Call between steps. "out of memory" if memory runs out.
+    // Lists problems of a world, one line each, with the number of bodies that have it; empty if there are none. Checks
+    // the world's solver and dispatcher, pairs and links left to Bullet other than by Settings::m_solver, cloth that
+    // intersects a mesh or lies inside one, nodes that are not finite, and margins out of proportion. Adds what the
+    // last steps found: cloth that meets cloth, with counts, obstacles that teleport in step after step, and the
+    // status. Fetches the nodes of kept bodies. For development: takes milliseconds to seconds. Call between steps.
+    // "out of memory" if memory runs out.
     std::string diagnose(const btCollisionWorld& world) const;
 
     // Brings a soft body or an obstacle's meshes to the device, so that the first step near it does not pay for this.

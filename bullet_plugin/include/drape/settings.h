@@ -158,9 +158,9 @@ struct Settings
     // default lines go to standard error.
     std::function<void(const char*)> m_log = logToStandardError;
 
-    // Returns an app's name for an object, for lines of m_log and of Plugin::diagnose(). Without it (the default), and
-    // where its text is empty or it throws, lines have the object's address. Called for such lines alone, on a thread
-    // that calls the plugin, which it must not call. A ClothWorld ignores it, and names its bodies by their numbers.
+    // Returns the app's name for an object in lines of m_log and of Plugin::diagnose(). Lines have the address instead
+    // if this is empty (the default), throws or returns an empty text. Called on a thread that calls the plugin; must
+    // not call the plugin. A ClothWorld asks it only for what an app adds: its own bodies have their indices.
     std::function<std::string(const btCollisionObject&)> m_nameOf;
 };
 }  // namespace drape
