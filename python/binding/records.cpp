@@ -93,6 +93,7 @@ py::dict statusBits()
 #undef DRAPE_BIT
     return found;
 }
+
 // Returns what is wrong with an argument, with Python's names: Settings::m_mode becomes Settings.mode. The call, which
 // a traceback names, is left out.
 std::string causeOf(const Error& error)

@@ -3,7 +3,7 @@
 #pragma once
 
 // clang-format off
-// Fields of Settings, without m_nameOf, which C lacks, and m_log and m_parallelFor, which are two fields each in C.
+// Lists the fields of Settings. Omits m_nameOf, which C lacks, and m_log and m_parallelFor, which have two fields in C.
 #define DRAPE_SETTINGS_FIELDS(FIELD) \
     FIELD(m_backend) FIELD(m_device) FIELD(m_crossover) FIELD(m_activation) FIELD(m_mode) FIELD(m_solver) \
     FIELD(m_solverPlace) FIELD(m_dynamicConvex) FIELD(m_staticConvex) FIELD(m_surfaces) FIELD(m_clothSleeps) \

@@ -134,7 +134,7 @@ CollisionStep::Pair CollisionStep::makePair(const PairNote& note, const ClothMir
 void CollisionStep::leaveOutField(const PairNote& note)
 {
     m_fieldsLeftOut = true;
-    if (!m_withoutFields.isNew({keyOf(*note.m_cloth), keyOf(*note.m_obstacle.m_object)})) return;
+    if (!m_toldFields.isNew({keyOf(*note.m_cloth), keyOf(*note.m_obstacle.m_object)})) return;
     m_state.log(m_state.nameOf(*note.m_cloth) + " covers more cells of the height field of " +
                 m_state.nameOf(*note.m_obstacle.m_object) +
                 " than a step reads, and does not collide with it in this step");

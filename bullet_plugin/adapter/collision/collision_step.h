@@ -168,9 +168,9 @@ private:
     BringToHost m_bringToHost;
     DeformedPairs m_deformed;
     PairStarts m_starts;
-    std::vector<std::vector<int>> m_jumped;           // result of checkStarts(), by body
-    std::unordered_set<const btSoftBody*> m_invalid;  // with nodes that were not finite; compared, not followed
-    ToldProblems<BodyKey> m_leftOut;                  // bodies left out of a step
-    ToldProblems<std::pair<BodyKey, BodyKey>> m_withoutFields;  // cloths and height fields of too many cells
+    std::vector<std::vector<int>> m_jumped;                  // result of checkStarts(), by body
+    std::unordered_set<const btSoftBody*> m_invalid;         // with nodes that were not finite; compared, not followed
+    ToldProblems<BodyKey> m_toldLeftOut;                     // bodies left out of steps
+    ToldProblems<std::pair<BodyKey, BodyKey>> m_toldFields;  // cloths and height fields that they cover too far
 };
 }  // namespace drape

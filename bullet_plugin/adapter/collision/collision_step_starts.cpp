@@ -174,7 +174,7 @@ void CollisionStep::leaveOut(std::size_t index)
     m_mirrors[index]->startAnew();
     body.m_leftOut = body.m_wasTangled = true;
     body.m_contacts.m_limit.clear();
-    if (!m_leftOut.isNew(keyOf(*body.m_body))) return;
+    if (!m_toldLeftOut.isNew(keyOf(*body.m_body))) return;
     char link[64] = "";
     if (isStretched)
         std::snprintf(link, sizeof(link), "; a link is %.3g times as long as at rest",
@@ -229,8 +229,8 @@ void CollisionStep::reportLeftSurfaces()
 
 void CollisionStep::end()
 {
-    m_leftOut.endStep();
-    m_withoutFields.endStep();
+    m_toldLeftOut.endStep();
+    m_toldFields.endStep();
     for (const BodyContacts& body : m_bodies)
     {
         for (const NodePush& push : body.m_pushes)

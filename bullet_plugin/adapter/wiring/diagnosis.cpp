@@ -69,10 +69,10 @@ public:
     }
 
 private:
-    // A body, or two that are a pair.
+    // Identifies a body (the second is null) or a pair of bodies.
     using Subject = std::pair<const btCollisionObject*, const btCollisionObject*>;
 
-    // A text, and the bodies or pairs to which it applies; none for the world as a whole.
+    // Holds a text and the bodies or pairs to which it applies; none if it is about the whole world.
     struct Remark
     {
         std::string m_text, m_firstName;
@@ -90,15 +90,13 @@ private:
         }
     };
 
-    void add(const std::string& line)
-    {
-        if (!line.empty()) m_remarks.push_back({line, "", {}});
-    }
-    // These add nothing if the remark is empty.
+    void add(const std::string& line) { m_remarks.push_back({line, "", {}}); }
+    // Adds a remark about a body, unless it is empty.
     void addAbout(const btCollisionObject& body, const std::string& remark)
     {
         addAbout({&body, nullptr}, remark, [&] { return m_plugin.state()->nameOf(body); });
     }
+    // Adds a remark about a pair, unless it is empty.
     void addAbout(const btCollisionObject& a, const btCollisionObject& b, const std::string& remark)
     {
         addAbout({&a, &b}, remark, [&] { return m_plugin.state()->namesOf(a, b); });

@@ -138,7 +138,7 @@ typedef struct DrapeSettings
     size_t m_contactLimit;           // largest number of contacts in a step, or of answers of a query
     int m_profileKernels;            // 1: the device times every kernel launch
     const char* m_cacheFolder;       // folder for compiled kernels; "none": no cache; "" or null for the default
-    DrapeLog m_log;                  // receives problems of worlds, where bodies are indices; null: no log
+    DrapeLog m_log;                  // receives problems of worlds; names bodies by index; null: no log
     void* m_logUser;                 // passed to m_log
     DrapeParallelFor m_parallelFor;  // runs Drape's jobs on the app's job system; null: threads of Drape's own
     void* m_parallelForUser;         // passed to m_parallelFor

@@ -141,7 +141,7 @@ public:
     // own algorithm finds in a step leave that step to Bullet. "out of memory" if memory runs out.
     std::string whyBulletSolves(const btSoftBody& body) const;
 
-    // Lists problems of a world, one line each, with the number of bodies that have it; empty if there are none. Checks
+    // Lists the problems of a world, a line for each with the number of bodies that have it; empty without any. Checks
     // the world's solver and dispatcher, pairs and links left to Bullet other than by Settings::m_solver, cloth that
     // intersects a mesh or lies inside one, nodes that are not finite, and margins out of proportion. Adds what the
     // last steps found: cloth that meets cloth, with counts, obstacles that teleport in step after step, and the
